@@ -83,6 +83,7 @@ int brunt_bodies_holding(const brunt_bodies *bodies, const int32_t *first, int32
 void brunt_bodies_free(brunt_bodies *bodies) {
     for (int i = 0; bodies->mpm && i < bodies->mpm_count; i++) brunt_body_free(&bodies->mpm[i]);
     for (int k = 0; bodies->fem && k < bodies->fem_count; k++) brunt_fem_free(&bodies->fem[k]);
+    brunt_background_free(&bodies->background);
     brunt_free(bodies->all);
     brunt_free(bodies->mpm);
     brunt_free(bodies->fem);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fem/fem_body.h"
+#include "grid/background.h"
 #include "mpm/mpm_body.h"
 #include "mpm/audit.h"
 
@@ -69,6 +70,7 @@ typedef struct brunt_bodies {
     // Of each body its first block of the state and its first array; past the last how many they all have.
     int32_t *first_block, *first_array;
     bool has_particles, has_fluid;
+    brunt_background background; // the mesh that all grids are of; without nodes: they are lattices
 } brunt_bodies;
 
 // The arrays of each are its fields, and this many more.

@@ -17,6 +17,7 @@ static void drop_lists(brunt_world_def *def) {
     def->materials = NULL, def->bodies = NULL, def->boundaries = NULL, def->detonations = NULL;
     def->material_count = def->body_count = def->boundary_count = def->detonation_count = 0;
     def->contact.pairs = NULL, def->contact.pair_count = 0;
+    def->background = (brunt_mesh){.node_count = 0};
 }
 
 void brunt_settings_make(brunt_settings *s, const brunt_world_def *def, bool particles) {

@@ -22,6 +22,10 @@ enum {
     BRUNT_BIN_STARTS = BRUNT_BLOCK_NODES + 1
 };
 
+// What links points to the nodes: B-splines of order 1, 2 or 3, or linear functions over triangles, those that the
+// diagonals make of the cells or those of a mesh (background.h). Numbers as of the instances that are made of them.
+enum { BRUNT_GRID_CUT = 4, BRUNT_GRID_MESH = 5, BRUNT_MESH_CORNERS = 3 * BRUNT_BLOCK_NODES };
+
 // The reals of a node: one cache line in double precision. P2G leaves mass, momentum and the impulse of the internal
 // force; the grid update turns them into the new and the old velocity. Momentum and impulse are kept apart because the
 // energy ledger needs the kinetic energy before the forces act, and FLIP the change of velocity.
@@ -52,6 +56,7 @@ typedef struct brunt_table {
 
 typedef struct brunt_grid {
     int dim, order;   // 2 or 3; 1 linear, 2 quadratic, 3 cubic
+    int kernel;       // the order, or BRUNT_GRID_CUT, BRUNT_GRID_MESH, which are linear
     int side;         // bins along an edge of a block: 4 in 3D, 8 in 2D
     int corners;      // 2^dim
     int span;         // nodes along an edge that a block's bins touch: side + order
@@ -79,9 +84,18 @@ typedef struct brunt_grid {
     uint64_t *spare_key;
     size_t spare_key_capacity;
     brunt_table block_table, slot_table;
+
+    // Of BRUNT_GRID_MESH, else NULL. The mesh lasts as long as the grid.
+    const struct brunt_background *mesh;
+    int32_t
+        *corner; // of each block, three a bin: the node's number (slot * BRUNT_BLOCK_NODES + place), -1: no triangle
+    int32_t *source_first, *source; // of each node: where it stands in `corner`, ascending
+    size_t corner_capacity, source_first_capacity, source_capacity;
 } brunt_grid;
 
 void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const double origin[3]);
+// The same over triangles, in two dimensions and of order 1, before there are blocks: of the cells, or of `mesh`.
+void brunt_grid_use_triangles(brunt_grid *grid, const struct brunt_background *mesh);
 void brunt_grid_free(brunt_grid *grid);
 size_t brunt_grid_bytes(const brunt_grid *grid);
 
@@ -118,6 +132,12 @@ static inline real *brunt_slot_nodes(const brunt_grid *grid, int32_t slot) {
 static inline bool brunt_node_held(const brunt_grid *grid, int64_t number, int component) {
     return grid->held && grid->held[number] >> component & 1;
 }
+// Where node n of a mesh stands: coordinates of a lattice whose slots are the mesh's.
+static inline void brunt_grid_mesh_node(int32_t n, int32_t at[3]) { at[0] = n / 8, at[1] = n % 8, at[2] = 0; }
+// Place of node `node` of a slot, whatever the grid is of [m].
+void brunt_grid_node_place(const brunt_grid *grid, int32_t slot, int node, double x[3]);
+// Its number (slot * BRUNT_BLOCK_NODES + place) of the node with global coordinates `at`; BRUNT_NONE: not alive.
+int64_t brunt_grid_number(const brunt_grid *grid, const int32_t at[3]);
 // The node with global coordinates `at`, NULL when it is not alive.
 real *brunt_grid_node(const brunt_grid *grid, const int32_t at[3]);
 // Marks the nodes that the kernels of particles reach, by their numbers (slot * BRUNT_BLOCK_NODES + place).

@@ -8,6 +8,8 @@
     X(2d_linear, 2, BRUNT_LINEAR)                                                                                      \
     X(2d_quadratic, 2, BRUNT_QUADRATIC)                                                                                \
     X(2d_cubic, 2, BRUNT_CUBIC)                                                                                        \
+    X(2d_cut, 2, BRUNT_GRID_CUT)                                                                                       \
+    X(2d_mesh, 2, BRUNT_GRID_MESH)                                                                                     \
     X(3d_linear, 3, BRUNT_LINEAR)                                                                                      \
     X(3d_quadratic, 3, BRUNT_QUADRATIC)                                                                                \
     X(3d_cubic, 3, BRUNT_CUBIC)

@@ -46,6 +46,10 @@ void brunt_body_free(brunt_body *body);
 // --- validate.c: aborts where particles, blocks and bins do not belong together. Every step in debug builds.
 void brunt_body_validate(brunt_body *body);
 
+// p2g_triangles.c: marks the nodes at which particles have a weight or a slope, by their numbers; of cells that are cut
+// in two not the one across the diagonal.
+void brunt_body_mark_reached(const brunt_body *body, uint8_t *mark);
+
 // Views particles `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
 brunt_material_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
 // Stored and dissipated energy of all particles [J].

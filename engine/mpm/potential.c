@@ -53,7 +53,7 @@ static brunt_stencils stencils(void *self) {
 // The bins with particles, and the unknowns among their nodes.
 static void list_bins(brunt_mpm_potential *p) {
     const brunt_grid *grid = &p->body->grid;
-    const int N = grid->order + 1, n = kernel_nodes(grid->dim, grid->order);
+    const int N = grid->order + 1, n = kernel_nodes(grid->dim, grid->kernel);
     int64_t count = 0, nodes = 0;
     for (int32_t b = 0; b < grid->block_count; b++)
         for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
@@ -65,7 +65,9 @@ static void list_bins(brunt_mpm_potential *p) {
             for (int k = 0; k < n; k++) {
                 const bool flat = grid->dim == 2;
                 const int i = flat ? k / N : k / (N * N), j = flat ? k % N : k / N % N, m = flat ? 0 : k % N;
-                const int32_t node = p->number[window_node(grid, &grid->blocks[b], at[0] + i, at[1] + j, at[2] + m)];
+                const int64_t place = grid->mesh ? corners_of(grid, &grid->blocks[b])[3 * bin + k]
+                                                 : window_node(grid, &grid->blocks[b], at[0] + i, at[1] + j, at[2] + m);
+                const int32_t node = p->number[place];
                 if (node < 0) continue;
                 p->node[nodes++] = node;
             }
@@ -88,7 +90,7 @@ static int reserve_arrays(brunt_mpm_potential *p, brunt_error *error) {
         BRUNT_CAPACITY(p->limit, (size_t)blocks, 0, "blocks of particles", error) ||
         BRUNT_CAPACITY(p->result, (size_t)blocks, 0, "blocks of particles", error) ||
         BRUNT_CAPACITY(p->first, (size_t)bins + 1, 0, "bins of particles", error) ||
-        BRUNT_CAPACITY(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0,
+        BRUNT_CAPACITY(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->kernel)) + 1, 0,
                        "grid nodes of bins of particles", error) ||
         brunt_mpm_matrix_reserve(p, error) ||
         BRUNT_CAPACITY_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0, "blocks of particles", error))
@@ -146,9 +148,10 @@ BRUNT_INLINE void inverse_step(int dim, const mpm_tile *tile, int32_t at, lanes 
 }
 
 // Adds P slope of a vector to the nodes of its kernels, lane by lane.
-BRUNT_INLINE void spread_forces(int dim, int order, bool same, const kernel_lanes *k, const lanes P[9], double *force) {
-    for (int n = 0; n < kernel_nodes(dim, order); n++) {
-        const kernel_node node = node_of(dim, order, k, n);
+BRUNT_INLINE void spread_forces(int dim, int kernel, bool same, const kernel_lanes *k, const lanes P[9],
+                                double *force) {
+    for (int n = 0; n < kernel_nodes(dim, kernel); n++) {
+        const kernel_node node = node_of(dim, kernel, k, n);
         for (int i = 0; i < dim; i++) {
             lanes f = P[i * dim] * node.slope[0];
             for (int j = 1; j < dim; j++) f += P[i * dim + j] * node.slope[j];
@@ -164,11 +167,11 @@ BRUNT_INLINE void spread_forces(int dim, int order, bool same, const kernel_lane
 }
 
 // Adds V tau f^-T slope of a vector to the block's nodes.
-BRUNT_INLINE void add_forces(int dim, int order, brunt_mpm_potential *p, const brunt_block *block, int64_t slot,
+BRUNT_INLINE void add_forces(int dim, int kernel, brunt_mpm_potential *p, const brunt_block *block, int64_t slot,
                              const mpm_tile *tile, int32_t at) {
     lanes inverse[9], P[9];
     kernel_lanes k;
-    kernel_at(dim, order, p->body, block, slot, &k);
+    kernel_at(dim, kernel, p->body, block, slot, &k);
     inverse_step(dim, tile, at, inverse);
     const lanes volume = lanes_load(volume_of(p) + slot);
     for (int i = 0; i < dim; i++)
@@ -178,9 +181,9 @@ BRUNT_INLINE void add_forces(int dim, int order, brunt_mpm_potential *p, const b
             P[i * dim + j] = lanes_select(volume > 0, volume * sum, lanes_set(0));
         }
     if (k.same)
-        spread_forces(dim, order, true, &k, P, tile->force);
+        spread_forces(dim, kernel, true, &k, P, tile->force);
     else
-        spread_forces(dim, order, false, &k, P, tile->force);
+        spread_forces(dim, kernel, false, &k, P, tile->force);
 }
 
 // Tangents of a vector times the volume, with f^-1 from both sides: for slopes in the configuration of the grid.
@@ -210,7 +213,7 @@ BRUNT_INLINE void pull_back(int dim, brunt_mpm_potential *p, int64_t slot, const
 }
 
 // What is wanted of a tile of `count` particles from `slot` on.
-BRUNT_INLINE void evaluate_tile(int dim, int order, const mpm_call *call, int32_t b, int64_t slot, int32_t count,
+BRUNT_INLINE void evaluate_tile(int dim, int kernel, const mpm_call *call, int32_t b, int64_t slot, int32_t count,
                                 const double *window) {
     brunt_mpm_potential *p = call->p;
     const brunt_grid *grid = &p->body->grid;
@@ -221,8 +224,8 @@ BRUNT_INLINE void evaluate_tile(int dim, int order, const mpm_call *call, int32_
     for (int32_t s = 0; s < count; s += BRUNT_LANES) {
         kernel_lanes k;
         lanes H[9];
-        kernel_at(dim, order, p->body, block, slot + s, &k);
-        field_at(dim, order, window, &k, NULL, H);
+        kernel_at(dim, kernel, p->body, block, slot + s, &k);
+        field_at(dim, kernel, window, &k, NULL, H);
         deform_points(dim, p->body, slot + s, H, &tile, s);
     }
     brunt_trial_points trial[BRUNT_COMPONENTS];
@@ -236,7 +239,7 @@ BRUNT_INLINE void evaluate_tile(int dim, int order, const mpm_call *call, int32_
     brunt_material_respond(&p->body->material, trial);
     if (call->wanted == MPM_TANGENT && call->project) brunt_material_project(&p->body->material, trial);
     for (int32_t s = 0; s < count; s += BRUNT_LANES) {
-        if (call->wanted == MPM_GRADIENT) add_forces(dim, order, p, block, slot + s, &tile, s);
+        if (call->wanted == MPM_GRADIENT) add_forces(dim, kernel, p, block, slot + s, &tile, s);
         if (call->wanted == MPM_TANGENT) pull_back(dim, p, slot + s, &tile, s);
         if (call->wanted != MPM_ENERGY) continue;
         const lanes volume = lanes_load(volume_of(p) + slot + s);
@@ -262,13 +265,14 @@ BRUNT_INLINE double widest(int dim, int nodes, const double *window) {
 // Whether no volume of a block can be lost on the way, by its nodes alone: slopes of a kernel along an axis add up to
 // nothing, and their sizes to no more than 2 / h, so that no entry of f - I is above `widest` over h; with three of
 // them in a row below 1 the determinant of f is above 0. An entry of 0.2 is far from that.
-BRUNT_INLINE bool keeps_volume(int dim, int order, const mpm_call *call, const double *u, const double *way) {
-    const int span = (dim == 3 ? 4 : 8) + order, nodes = dim == 3 ? span * span * span : span * span;
+BRUNT_INLINE bool keeps_volume(int dim, int kernel, const mpm_call *call, const double *u, const double *way) {
+    const int nodes = window_nodes(dim, kernel);
+    if (kernel == BRUNT_GRID_MESH) return false; // triangles may be as flat as they like
     return (widest(dim, nodes, u) + call->largest / 0.9 * widest(dim, nodes, way)) * (double)call->p->body->grid.inv_h <
            0.2;
 }
 
-BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) {
+BRUNT_INLINE void evaluate(int dim, int kernel, const mpm_call *call, int32_t b) {
     brunt_mpm_potential *p = call->p;
     const brunt_grid *grid = &p->body->grid;
     const brunt_block *block = &grid->blocks[b];
@@ -280,21 +284,21 @@ BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) 
     if (call->wanted == MPM_GRADIENT) memset(force, 0, (size_t)grid->span_nodes * (size_t)dim * sizeof *force);
     p->energy[b] = (brunt_energy_sum){0};
     p->limit[b] = call->largest;
-    if (call->wanted == MPM_LIMIT && keeps_volume(dim, order, call, window, way)) return;
+    if (call->wanted == MPM_LIMIT && keeps_volume(dim, kernel, call, window, way)) return;
     if (call->wanted < MPM_LIMIT) {
         for (int32_t first = 0; first < padded; first += TILE_LIMIT)
-            evaluate_tile(dim, order, call, b, (int64_t)block->first + first,
+            evaluate_tile(dim, kernel, call, b, (int64_t)block->first + first,
                           padded - first < TILE_LIMIT ? padded - first : TILE_LIMIT, window);
         return;
     }
     for (int64_t slot = block->first; slot < block->first + padded; slot += BRUNT_LANES) {
         kernel_lanes k;
         lanes mean[3], F[9], D[9];
-        kernel_at(dim, order, p->body, block, slot, &k);
-        field_at(dim, order, window, &k, mean, F);
+        kernel_at(dim, kernel, p->body, block, slot, &k);
+        field_at(dim, kernel, window, &k, mean, F);
         if (call->wanted == MPM_LIMIT) {
             for (int c = 0; c < dim; c++) F[c * (dim + 1)] += 1;
-            field_at(dim, order, way, &k, NULL, D);
+            field_at(dim, kernel, way, &k, NULL, D);
             p->limit[b] = least_step_to_volume(dim, F, D, p->limit[b]);
             continue;
         }
@@ -303,17 +307,17 @@ BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) 
     }
 }
 
-#define INSTANCE(name, dim, order)                                                                                     \
-    static void potential_##name(const mpm_call *call, int32_t block) { evaluate(dim, order, call, block); }
+#define INSTANCE(name, dim, kernel)                                                                                    \
+    static void potential_##name(const mpm_call *call, int32_t block) { evaluate(dim, kernel, call, block); }
 MPM_INSTANCES(INSTANCE)
-#define FOUND(name, dim, order) [order][dim] = potential_##name,
+#define FOUND(name, dim, kernel) [kernel][dim] = potential_##name,
 typedef void block_instance(const mpm_call *call, int32_t block);
 static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
 
 static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const mpm_call *call = context;
     const brunt_grid *grid = &call->p->body->grid;
-    block_instance *instance = instances[grid->order][grid->dim];
+    block_instance *instance = instances[grid->kernel][grid->dim];
     (void)worker;
     for (int64_t b = begin; b < end; b++) instance(call, (int32_t)b);
 }
@@ -353,8 +357,21 @@ static void gather_slots(void *context, int64_t begin, int64_t end, int worker) 
         }
 }
 
+// Nodes of a mesh: what the triangles around give, in their order.
+static void gather_mesh(void *context, int64_t begin, int64_t end, int worker) {
+    const mpm_gather *gather = context;
+    const brunt_mpm_potential *p = gather->p;
+    const brunt_grid *grid = &p->body->grid;
+    (void)worker;
+    for (int64_t n = begin * BRUNT_BLOCK_NODES; n < end * BRUNT_BLOCK_NODES; n++)
+        for (int32_t k = grid->source_first[n]; k < grid->source_first[n + 1] && p->number[n] >= 0; k++)
+            for (int i = 0; i < 2; i++)
+                gather->out[(int64_t)p->number[n] * gather->stride + i] += p->force[(int64_t)grid->source[k] * 2 + i];
+}
+
 void brunt_mpm_gather(mpm_gather *gather, const brunt_team *team) {
-    brunt_parallel(team->threads, gather->p->body->grid.slot_count, 1, gather_slots, gather, team->timer);
+    const brunt_grid *grid = &gather->p->body->grid;
+    brunt_parallel(team->threads, grid->slot_count, 1, grid->mesh ? gather_mesh : gather_slots, gather, team->timer);
 }
 
 static brunt_energy_sum energy(void *self, const brunt_team *team, const double *u) {

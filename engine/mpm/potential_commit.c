@@ -23,14 +23,14 @@ typedef struct grid_motion {
     lanes B[9], turn[9];                   // sum w v (x_i - x_p)^T, sum w v du^T
 } grid_motion;
 
-BRUNT_INLINE void motion_at(int dim, int order, const mpm_windows *w, const kernel_lanes *k, real h, bool flip,
+BRUNT_INLINE void motion_at(int dim, int kernel, const mpm_windows *w, const kernel_lanes *k, real h, bool flip,
                             grid_motion *m) {
-    field_at(dim, order, w->u, k, m->u, m->H);
+    field_at(dim, kernel, w->u, k, m->u, m->H);
     m->kinetic = lanes_set(0);
     for (int i = 0; i < dim; i++) m->v[i] = m->old[i] = lanes_set(0);
     for (int c = 0; c < dim * dim; c++) m->B[c] = m->turn[c] = m->slope[c] = lanes_set(0);
-    for (int n = 0; n < kernel_nodes(dim, order); n++) {
-        const kernel_node node = node_of(dim, order, k, n);
+    for (int n = 0; n < kernel_nodes(dim, kernel); n++) {
+        const kernel_node node = node_of(dim, kernel, k, n);
         lanes u[3], v[3], old[3];
         window_values(dim, k->same, w->u, k, node.at, u);
         window_values(dim, k->same, w->v, k, node.at, v);
@@ -40,7 +40,7 @@ BRUNT_INLINE void motion_at(int dim, int order, const mpm_windows *w, const kern
             m->v[i] += weighed, m->kinetic += weighed * v[i];
             if (flip) m->old[i] += node.weight * old[i];
             for (int j = 0; j < dim; j++) {
-                m->B[i * dim + j] += weighed * (((real)node.index[j] - k->local[j]) * h);
+                if (kernel_order(kernel) > 1) m->B[i * dim + j] += weighed * (((real)node.index[j] - k->local[j]) * h);
                 m->turn[i * dim + j] += weighed * (u[j] - m->u[j]);
                 m->slope[i * dim + j] += v[i] * node.slope[j];
             }
@@ -50,16 +50,17 @@ BRUNT_INLINE void motion_at(int dim, int order, const mpm_windows *w, const kern
 
 // C = B D^-1. The linear kernel's D depends on the place and vanishes at nodes, where B does too: its first part is the
 // gradient of v, exactly; the second, which is of the order of D times the step, is left out where there is no D.
-BRUNT_INLINE void store_affine(int dim, int order, brunt_body *body, int64_t slot, const grid_motion *m) {
+BRUNT_INLINE void store_affine(int dim, int kernel, brunt_body *body, int64_t slot, const grid_motion *m) {
     const brunt_grid *grid = &body->grid;
     real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
     real *const *C = brunt_field(&body->particles, BRUNT_FIELD_affine);
     for (int a = 0; a < dim; a++) {
-        const lanes D = bspline_moment(order, lanes_load(x[a] + slot) - (real)grid->origin[a], grid->h, grid->inv_h);
+        const lanes D =
+            bspline_moment(kernel_order(kernel), lanes_load(x[a] + slot) - (real)grid->origin[a], grid->h, grid->inv_h);
         const lane_mask there = D > LANES_REAL_EPSILON * grid->h * grid->h;
         for (int i = 0; i < dim; i++) {
             const lanes turn = (real)0.5 * (m->turn[i * dim + a] - m->turn[a * dim + i]);
-            const lanes first = order == 1 ? m->slope[i * dim + a] : m->B[i * dim + a] / D;
+            const lanes first = kernel_order(kernel) == 1 ? m->slope[i * dim + a] : m->B[i * dim + a] / D;
             lanes_store(C[i * dim + a] + slot,
                         first + lanes_select(there, turn / lanes_select(there, D, lanes_set(1)), lanes_set(0)));
         }
@@ -67,13 +68,14 @@ BRUNT_INLINE void store_affine(int dim, int order, brunt_body *body, int64_t slo
 }
 
 // |C|^2 weighed by D where the particles are now.
-BRUNT_INLINE lanes affine_square(int dim, int order, brunt_body *body, int64_t slot) {
+BRUNT_INLINE lanes affine_square(int dim, int kernel, brunt_body *body, int64_t slot) {
     const brunt_grid *grid = &body->grid;
     real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
     real *const *C = brunt_field(&body->particles, BRUNT_FIELD_affine);
     lanes sum = lanes_set(0);
     for (int a = 0; a < dim; a++) {
-        const lanes D = bspline_moment(order, lanes_load(x[a] + slot) - (real)grid->origin[a], grid->h, grid->inv_h);
+        const lanes D =
+            bspline_moment(kernel_order(kernel), lanes_load(x[a] + slot) - (real)grid->origin[a], grid->h, grid->inv_h);
         for (int i = 0; i < dim; i++) sum += lanes_load(C[i * dim + a] + slot) * lanes_load(C[i * dim + a] + slot) * D;
     }
     return sum;
@@ -99,7 +101,7 @@ static void commit_material(brunt_mpm_potential *p, int64_t slot, int32_t count,
     if (result.bad >= 0 && report->bad < 0) report->bad = (int32_t)slot + result.bad, report->reason = result.reason;
 }
 
-BRUNT_INLINE void commit_block(int dim, int order, const mpm_commit *commit, int32_t b) {
+BRUNT_INLINE void commit_block(int dim, int kernel, const mpm_commit *commit, int32_t b) {
     brunt_mpm_potential *p = commit->p;
     const brunt_mpm_motion *motion = commit->motion;
     brunt_body *body = p->body;
@@ -125,10 +127,10 @@ BRUNT_INLINE void commit_block(int dim, int order, const mpm_commit *commit, int
             kernel_lanes k;
             grid_motion m;
             lanes square = lanes_set(0);
-            kernel_at(dim, order, body, block, slot, &k);
-            motion_at(dim, order, &windows, &k, body->grid.h, flips, &m);
+            kernel_at(dim, kernel, body, block, slot, &k);
+            motion_at(dim, kernel, &windows, &k, body->grid.h, flips, &m);
             deform_points(dim, body, slot, m.H, &tile, at);
-            if (affine) store_affine(dim, order, body, slot, &m);
+            if (affine) store_affine(dim, kernel, body, slot, &m);
             for (int i = 0; i < dim; i++) {
                 lanes now = m.v[i];
                 if (flips) now = flip * (lanes_load(v[i] + slot) + (m.v[i] - m.old[i])) + (1 - flip) * m.v[i];
@@ -137,7 +139,7 @@ BRUNT_INLINE void commit_block(int dim, int order, const mpm_commit *commit, int
                 square += now * now;
             }
             fastest = lanes_max(fastest, square);
-            if (affine) square += affine_square(dim, order, body, slot);
+            if (affine) square += affine_square(dim, kernel, body, slot);
             kinetic += lanes_load(mass + slot) * square;
             grid_kinetic += lanes_load(mass + slot) * m.kinetic;
         }
@@ -148,19 +150,19 @@ BRUNT_INLINE void commit_block(int dim, int order, const mpm_commit *commit, int
     p->result[b] = (mpm_block_result){report->kinetic, 0.5 * (double)lanes_sum(grid_kinetic)};
 }
 
-#define INSTANCE(name, dim, order)                                                                                     \
+#define INSTANCE(name, dim, kernel)                                                                                    \
     static void potential_commit_##name(const mpm_commit *commit, int32_t block) {                                     \
-        commit_block(dim, order, commit, block);                                                                       \
+        commit_block(dim, kernel, commit, block);                                                                      \
     }
 MPM_INSTANCES(INSTANCE)
-#define FOUND(name, dim, order) [order][dim] = potential_commit_##name,
+#define FOUND(name, dim, kernel) [kernel][dim] = potential_commit_##name,
 typedef void block_instance(const mpm_commit *commit, int32_t block);
 static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
 
 static void commit_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const mpm_commit *commit = context;
     const brunt_grid *grid = &commit->p->body->grid;
-    block_instance *instance = instances[grid->order][grid->dim];
+    block_instance *instance = instances[grid->kernel][grid->dim];
     (void)worker;
     for (int64_t b = begin; b < end; b++) instance(commit, (int32_t)b);
 }

@@ -6,7 +6,9 @@
 #pragma once
 
 #include "base/simd_math.h"
+#include "grid/background.h"
 #include "grid/bspline.h"
+#include "grid/triangles.h"
 #include "linear/block_matrix.h"
 #include "mpm/potential.h"
 
@@ -46,9 +48,34 @@ struct brunt_mpm_potential {
     size_t coloured_capacity, place_capacity, matrix_capacity;
 };
 
+// Kernels have the numbers of grid.h: those of triangles are linear.
+BRUNT_INLINE int kernel_order(int kernel) { return kernel > BRUNT_CUBIC ? BRUNT_LINEAR : kernel; }
+
 // Nodes of a kernel.
-BRUNT_INLINE int kernel_nodes(int dim, int order) {
-    return dim == 3 ? (order + 1) * (order + 1) * (order + 1) : (order + 1) * (order + 1);
+BRUNT_INLINE int kernel_nodes(int dim, int kernel) {
+    const int N = kernel_order(kernel) + 1;
+    if (kernel == BRUNT_GRID_MESH) return 3;
+    return dim == 3 ? N * N * N : N * N;
+}
+
+// Of a window of a lattice: nodes along an edge. Of a mesh a window is the corners of its triangles, three a bin.
+BRUNT_INLINE int window_span(int dim, int kernel) { return (dim == 3 ? 4 : 8) + kernel_order(kernel); }
+BRUNT_INLINE int window_nodes(int dim, int kernel) {
+    const int span = window_span(dim, kernel);
+    if (kernel == BRUNT_GRID_MESH) return BRUNT_MESH_CORNERS;
+    return dim == 3 ? span * span * span : span * span;
+}
+
+// How far node n of a kernel is from its first in the window.
+BRUNT_INLINE int place_in_window(int dim, int kernel, int n) {
+    const int N = kernel_order(kernel) + 1, span = window_span(dim, kernel);
+    if (kernel == BRUNT_GRID_MESH) return n;
+    return dim == 3 ? (n / (N * N) * span + n / N % N) * span + n % N : n / N * span + n % N;
+}
+
+// The corners of a block's triangles, as places in `number`; -1: there is no triangle.
+static inline const int32_t *corners_of(const brunt_grid *grid, const brunt_block *block) {
+    return grid->corner + (block - grid->blocks) * BRUNT_MESH_CORNERS;
 }
 
 // Place in `number` of the node at x, y, z of a block's window.
@@ -62,9 +89,22 @@ static inline int64_t window_node(const brunt_grid *grid, const brunt_block *blo
     return (int64_t)block->slot[corner] * BRUNT_BLOCK_NODES + ((x % side) * 4 + y % side) * 4 + z % side;
 }
 
+static inline void fill_corners(const brunt_mpm_potential *p, const brunt_block *block, const double *values,
+                                double *window) {
+    const int32_t *corner = corners_of(&p->body->grid, block);
+    for (int c = 0; c < BRUNT_MESH_CORNERS; c++, window += 2) {
+        const int32_t n = corner[c] >= 0 ? p->number[corner[c]] : BRUNT_NONE;
+        for (int i = 0; i < 2; i++) window[i] = n >= 0 ? values[(int64_t)n * 2 + i] : 0;
+    }
+}
+
 static inline void fill_window(const brunt_mpm_potential *p, const brunt_block *block, const double *values,
                                double *window) {
     const brunt_grid *grid = &p->body->grid;
+    if (grid->mesh) {
+        fill_corners(p, block, values, window);
+        return;
+    }
     const int dim = grid->dim, span = grid->span;
     for (int x = 0; x < span; x++)
         for (int y = 0; y < span; y++)
@@ -75,20 +115,47 @@ static inline void fill_window(const brunt_mpm_potential *p, const brunt_block *
 }
 
 // A vector of particles: local coordinates, weights and slopes along each axis, and where their kernels begin in the
-// window.
+// window. Of triangles w[0] are the weights of the nodes themselves, g[0] and g[1] their slopes along x and y.
 typedef struct kernel_lanes {
     lanes local[3], w[3][4], g[3][4];
     int base[BRUNT_LANES];
     bool same; // all of one bin: nodes are read and written once for all
 } kernel_lanes;
 
-BRUNT_INLINE void kernel_at(int dim, int order, const brunt_body *body, const brunt_block *block, int64_t slot,
+BRUNT_INLINE void see_if_same(kernel_lanes *k) {
+    k->same = true;
+    for (int l = 1; l < BRUNT_LANES; l++) k->same &= k->base[l] == k->base[0];
+}
+
+// Of the triangles of a mesh that the particles were found in.
+static inline void mesh_kernel_at(const brunt_body *body, const brunt_block *block, int64_t slot, kernel_lanes *k) {
+    const brunt_particles *particles = &body->particles;
+    real *const *x = brunt_kernel_position(particles);
+    for (int l = 0; l < BRUNT_LANES; l++) {
+        const int bin = particles->bin[slot + l];
+        const double at[2] = {(double)x[0][slot + l], (double)x[1][slot + l]};
+        double w[3], slope[3][2];
+        k->base[l] = 3 * bin;
+        brunt_background_weights(body->grid.mesh, block->coord[0] * BRUNT_BLOCK_NODES + bin, at, w, slope);
+        for (int n = 0; n < 3; n++) {
+            k->w[0][n][l] = (real)w[n];
+            for (int a = 0; a < 2; a++) k->g[a][n][l] = (real)slope[n][a];
+        }
+    }
+    see_if_same(k);
+}
+
+BRUNT_INLINE void kernel_at(int dim, int kernel, const brunt_body *body, const brunt_block *block, int64_t slot,
                             kernel_lanes *k) {
     const brunt_grid *grid = &body->grid;
     const brunt_particles *particles = &body->particles;
-    const int side = dim == 3 ? 4 : 8, span = side + order;
+    const int side = dim == 3 ? 4 : 8, span = window_span(dim, kernel);
     real *const *x = brunt_kernel_position(particles);
     int bins[3][BRUNT_LANES];
+    if (kernel == BRUNT_GRID_MESH) {
+        mesh_kernel_at(body, block, slot, k);
+        return;
+    }
     for (int l = 0; l < BRUNT_LANES; l++) {
         const int bin = particles->bin[slot + l];
         bins[0][l] = dim == 3 ? bin >> 4 : bin >> 3;
@@ -97,16 +164,19 @@ BRUNT_INLINE void kernel_at(int dim, int order, const brunt_body *body, const br
         k->base[l] = bins[0][l] * span + bins[1][l];
         if (dim == 3) k->base[l] = k->base[l] * span + bins[2][l];
     }
-    k->same = true;
-    for (int l = 1; l < BRUNT_LANES; l++) k->same &= k->base[l] == k->base[0];
+    see_if_same(k);
     for (int a = 0; a < dim; a++) {
         const real corner = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * side));
         lanes bin;
         for (int l = 0; l < BRUNT_LANES; l++) bin[l] = (real)bins[a][l];
         k->local[a] = (lanes_load(x[a] + slot) - corner) * grid->inv_h - bin;
-        bspline_weights(order, k->local[a], k->w[a]);
-        bspline_slopes(order, k->local[a], grid->inv_h, k->g[a]);
+        if (kernel == BRUNT_GRID_CUT) continue;
+        bspline_weights(kernel, k->local[a], k->w[a]);
+        bspline_slopes(kernel, k->local[a], grid->inv_h, k->g[a]);
     }
+    if (kernel != BRUNT_GRID_CUT) return;
+    cut_cell_weights(k->local[0], k->local[1], k->w[0]);
+    cut_cell_slopes(k->local[0], k->local[1], grid->inv_h, k->g[0], k->g[1]);
 }
 
 // Weight and slopes of node n of the kernels, z fastest; and how far it is from their first in the window.
@@ -115,9 +185,15 @@ typedef struct kernel_node {
     int at, index[3];
 } kernel_node;
 
-BRUNT_INLINE kernel_node node_of(int dim, int order, const kernel_lanes *k, int n) {
-    const int N = order + 1, side = dim == 3 ? 4 : 8, span = side + order;
+BRUNT_INLINE kernel_node node_of(int dim, int kernel, const kernel_lanes *k, int n) {
+    const int N = kernel_order(kernel) + 1, span = window_span(dim, kernel);
     kernel_node out;
+    if (kernel > BRUNT_CUBIC) {
+        out.weight = k->w[0][n];
+        out.slope[0] = k->g[0][n], out.slope[1] = k->g[1][n];
+        out.at = place_in_window(dim, kernel, n);
+        return out;
+    }
     if (dim == 2) {
         const int i = n / N, j = n % N;
         out.weight = k->w[0][i] * k->w[1][j];
@@ -147,12 +223,12 @@ BRUNT_INLINE void window_values(int dim, bool same, const double *window, const 
         for (int i = 0; i < dim; i++) out[i][l] = (real)window[(k->base[l] + at) * dim + i];
 }
 
-BRUNT_INLINE void field_of(int dim, int order, bool same, const double *window, const kernel_lanes *k, lanes *mean,
+BRUNT_INLINE void field_of(int dim, int kernel, bool same, const double *window, const kernel_lanes *k, lanes *mean,
                            lanes H[9]) {
     for (int c = 0; c < dim * dim; c++) H[c] = lanes_set(0);
     for (int i = 0; i < dim && mean; i++) mean[i] = lanes_set(0);
-    for (int n = 0; n < kernel_nodes(dim, order); n++) {
-        const kernel_node node = node_of(dim, order, k, n);
+    for (int n = 0; n < kernel_nodes(dim, kernel); n++) {
+        const kernel_node node = node_of(dim, kernel, k, n);
         lanes u[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
         window_values(dim, same, window, k, node.at, u);
         for (int i = 0; i < dim; i++) {
@@ -163,16 +239,17 @@ BRUNT_INLINE void field_of(int dim, int order, bool same, const double *window, 
 }
 
 // sum w u (NULL: not wanted) and sum u (x) slope.
-BRUNT_INLINE void field_at(int dim, int order, const double *window, const kernel_lanes *k, lanes *mean, lanes H[9]) {
+BRUNT_INLINE void field_at(int dim, int kernel, const double *window, const kernel_lanes *k, lanes *mean, lanes H[9]) {
     if (k->same)
-        field_of(dim, order, true, window, k, mean, H);
+        field_of(dim, kernel, true, window, k, mean, H);
     else
-        field_of(dim, order, false, window, k, mean, H);
+        field_of(dim, kernel, false, window, k, mean, H);
 }
 
 // The nodes of bins with particles follow one another in a window: the first one's place.
-BRUNT_INLINE int bin_base(int dim, int order, int bin) {
-    const int span = (dim == 3 ? 4 : 8) + order;
+BRUNT_INLINE int bin_base(int dim, int kernel, int bin) {
+    const int span = window_span(dim, kernel);
+    if (kernel == BRUNT_GRID_MESH) return 3 * bin;
     return dim == 3 ? ((bin >> 4) * span + (bin >> 2 & 3)) * span + (bin & 3) : (bin >> 3) * span + (bin & 7);
 }
 

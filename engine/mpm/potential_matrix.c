@@ -8,7 +8,8 @@
 //
 // Blocks of the grid whose coordinates are all of the same parity share no node, since kernels reach less far than a
 // block: these 2^dim colours follow one another, the blocks of one side by side, the bins of a block in their order.
-// What an entry is the sum of does not depend on the number of threads, and a block's rows stay in the cache.
+// What an entry is the sum of does not depend on the number of threads, and a block's rows stay in the cache. Blocks of
+// a mesh may all share nodes: they follow one another, one thread adds them.
 #include <string.h>
 
 #include "base/array.h"
@@ -19,8 +20,8 @@
 enum { CHUNK = 8, COLUMNS = 4 }; // particles at a time; vectors of a row in registers
 
 // Nodes of a kernel in whole vectors.
-BRUNT_INLINE int padded_nodes(int dim, int order) {
-    return (kernel_nodes(dim, order) + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+BRUNT_INLINE int padded_nodes(int dim, int kernel) {
+    return (kernel_nodes(dim, kernel) + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
 }
 
 // Pairs of components: K_ij, i <= j where the tangent is symmetric.
@@ -29,18 +30,18 @@ static inline int block_pairs(const brunt_mpm_potential *p, int dim) {
 }
 
 // Nodes within reach of a node.
-BRUNT_INLINE int stencil_width(int dim, int order) {
-    const int wide = 2 * order + 1;
+BRUNT_INLINE int stencil_width(int dim, int kernel) {
+    const int wide = 2 * kernel_order(kernel) + 1;
     return dim == 3 ? wide * wide * wide : wide * wide;
 }
 
 int brunt_mpm_matrix_reserve(brunt_mpm_potential *p, brunt_error *error) {
     const brunt_grid *grid = &p->body->grid;
-    const int dim = grid->dim, order = grid->order;
-    const int64_t n = padded_nodes(dim, order), pairs = block_pairs(p, dim),
+    const int dim = grid->dim, kernel = grid->kernel;
+    const int64_t n = padded_nodes(dim, kernel), pairs = block_pairs(p, dim),
                   chunk = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES;
     p->matrix_size = (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
-    p->place_size = (int64_t)grid->span_nodes * stencil_width(dim, order);
+    p->place_size = (int64_t)grid->span_nodes * stencil_width(dim, kernel);
     if (BRUNT_CAPACITY(p->matrix, (size_t)(p->threads * p->matrix_size), 0, "values of matrices of blocks of particles",
                        error) ||
         BRUNT_CAPACITY(p->place, (size_t)(p->threads * p->place_size), 0, "places of nodes in a matrix", error) ||
@@ -51,7 +52,7 @@ int brunt_mpm_matrix_reserve(brunt_mpm_potential *p, brunt_error *error) {
         p->colour_first[colour] = count;
         for (int32_t b = 0; b < grid->block_count; b++) {
             int parity = 0;
-            for (int a = 0; a < dim; a++) parity = 2 * parity + (grid->blocks[b].coord[a] & 1);
+            for (int a = 0; a < dim && !grid->mesh; a++) parity = 2 * parity + (grid->blocks[b].coord[a] & 1);
             if (parity == colour) p->coloured[count++] = b;
         }
     }
@@ -72,8 +73,8 @@ BRUNT_INLINE void tile_product(int rows, int columns, int stride, int count, con
 }
 
 // `symmetric`: not what lies before the diagonal.
-BRUNT_INLINE void product(int dim, int order, bool symmetric, int count, const real *G, const real *S, real *K) {
-    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), vectors = stride / BRUNT_LANES;
+BRUNT_INLINE void product(int dim, int kernel, bool symmetric, int count, const real *G, const real *S, real *K) {
+    const int n = kernel_nodes(dim, kernel), stride = padded_nodes(dim, kernel), vectors = stride / BRUNT_LANES;
     const int rows = n % 4 == 0 ? 4 : 3;
     for (int A = 0; A < n; A += rows)
         for (int v = symmetric ? A / BRUNT_LANES : 0; v < vectors; v += COLUMNS) {
@@ -91,13 +92,13 @@ BRUNT_INLINE void product(int dim, int order, bool symmetric, int count, const r
 }
 
 // Slopes of particles slot .. slot + BRUNT_LANES - 1, the first `some` of them, into rows of G.
-BRUNT_INLINE void slopes(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block, int64_t slot,
+BRUNT_INLINE void slopes(int dim, int kernel, const brunt_mpm_potential *p, const brunt_block *block, int64_t slot,
                          int some, real *G) {
-    const int stride = padded_nodes(dim, order);
+    const int stride = padded_nodes(dim, kernel);
     kernel_lanes k;
-    kernel_at(dim, order, p->body, block, slot, &k);
-    for (int n = 0; n < kernel_nodes(dim, order); n++) {
-        const kernel_node node = node_of(dim, order, &k, n);
+    kernel_at(dim, kernel, p->body, block, slot, &k);
+    for (int n = 0; n < kernel_nodes(dim, kernel); n++) {
+        const kernel_node node = node_of(dim, kernel, &k, n);
         for (int l = 0; l < some; l++)
             for (int a = 0; a < dim; a++) G[(l * dim + a) * stride + n] = node.slope[a][l];
     }
@@ -121,23 +122,23 @@ BRUNT_INLINE void stretch(int dim, int stride, const brunt_mpm_potential *p, int
 }
 
 // The sums K_ij, i <= j where the tangent is symmetric, of the particles first .. end - 1 of a block.
-BRUNT_INLINE void bin_sums(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block,
+BRUNT_INLINE void bin_sums(int dim, int kernel, const brunt_mpm_potential *p, const brunt_block *block,
                            const int32_t particles[2], real *K) {
     enum { CHUNK_LIMIT = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES };
-    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), pairs = block_pairs(p, dim);
+    const int n = kernel_nodes(dim, kernel), stride = padded_nodes(dim, kernel), pairs = block_pairs(p, dim);
     real *G = K + (size_t)pairs * (size_t)n * (size_t)stride, *S = G + CHUNK_LIMIT * dim * stride;
     memset(K, 0, (size_t)pairs * (size_t)n * (size_t)stride * sizeof *K);
     for (int32_t first = particles[0]; first < particles[1]; first += CHUNK_LIMIT) {
         const int32_t some = particles[1] - first < CHUNK_LIMIT ? particles[1] - first : CHUNK_LIMIT;
         const int64_t slot = (int64_t)block->first + first;
         for (int32_t q = 0; q < some; q += BRUNT_LANES)
-            slopes(dim, order, p, block, slot + q, some - q < BRUNT_LANES ? some - q : BRUNT_LANES,
+            slopes(dim, kernel, p, block, slot + q, some - q < BRUNT_LANES ? some - q : BRUNT_LANES,
                    G + q * dim * stride);
         for (int i = 0, pair = 0; i < dim; i++)
             for (int j = p->whole ? 0 : i; j < dim; j++, pair++) {
                 for (int32_t q = 0; q < some; q++)
                     stretch(dim, stride, p, slot + q, i * dim + j, G + q * dim * stride, S + q * dim * stride);
-                product(dim, order, i == j && !p->whole, some * dim, G, S,
+                product(dim, kernel, i == j && !p->whole, some * dim, G, S,
                         K + (size_t)pair * (size_t)n * (size_t)stride);
             }
     }
@@ -151,10 +152,11 @@ typedef struct block_rows {
 } block_rows;
 
 // `mark`: a number for each node, of no value before and after. Places of nodes that no bin couples say nothing.
-BRUNT_INLINE void find_rows(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block,
+BRUNT_INLINE void find_rows(int dim, int kernel, const brunt_mpm_potential *p, const brunt_block *block,
                             const brunt_block_matrix *m, int32_t *mark, block_rows *rows) {
     const brunt_grid *grid = &p->body->grid;
-    const int side = dim == 3 ? 4 : 8, span = side + order, wide = 2 * order + 1, deep = dim == 3 ? span : 1;
+    const int order = kernel_order(kernel), span = window_span(dim, kernel), wide = 2 * order + 1,
+              deep = dim == 3 ? span : 1;
     for (int w = 0; w < span * span * deep; w++)
         rows->number[w] = p->number[window_node(grid, block, w / (span * deep), w / deep % span, w % deep)];
     for (int w = 0; w < span * span * deep; w++) {
@@ -174,7 +176,7 @@ BRUNT_INLINE void find_rows(int dim, int order, const brunt_mpm_potential *p, co
                     const int32_t other = rows->number[(x * span + y) * deep + z];
                     int off = (x - at[0] + order) * wide + y - at[1] + order;
                     if (dim == 3) off = off * wide + z - at[2] + order;
-                    if (other >= 0) rows->place[w * stencil_width(dim, order) + off] = mark[other];
+                    if (other >= 0) rows->place[w * stencil_width(dim, kernel) + off] = mark[other];
                 }
     }
 }
@@ -216,14 +218,14 @@ BRUNT_INLINE void add_flat_pair(int plane, const real *AB, const real *BA, doubl
 }
 
 // Adds the sums of the bin whose kernels begin at node `base` of the window.
-BRUNT_INLINE void add_bin(bool whole, int dim, int order, const block_rows *rows, int base, const real *K) {
-    const int side = dim == 3 ? 4 : 8, span = side + order, N = order + 1, wide = 2 * order + 1, size = dim * dim,
-              all = stencil_width(dim, order);
-    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), plane = n * stride;
+BRUNT_INLINE void add_bin(bool whole, int dim, int kernel, const block_rows *rows, int base, const real *K) {
+    const int order = kernel_order(kernel), N = order + 1, wide = 2 * order + 1, size = dim * dim,
+              all = stencil_width(dim, kernel);
+    const int n = kernel_nodes(dim, kernel), stride = padded_nodes(dim, kernel), plane = n * stride;
     int window[KERNEL_LIMIT], off[KERNEL_LIMIT];
     for (int k = 0; k < n; k++) {
         const int x = dim == 3 ? k / (N * N) : k / N, y = dim == 3 ? k / N % N : k % N, z = k % N;
-        window[k] = base + (dim == 3 ? (x * span + y) * span + z : x * span + y);
+        window[k] = base + place_in_window(dim, kernel, k);
         off[k] = dim == 3 ? (x * wide + y) * wide + z : x * wide + y;
     }
     for (int A = 0; A < n; A++) {
@@ -242,43 +244,64 @@ BRUNT_INLINE void add_bin(bool whole, int dim, int order, const block_rows *rows
     }
 }
 
+// Adds the sums of a triangle of a mesh, whose corners are these places in `number`.
+static void add_triangle(const brunt_mpm_potential *p, const int32_t *corner, const real *K, brunt_block_matrix *m) {
+    const int stride = padded_nodes(2, BRUNT_GRID_MESH), plane = 3 * stride;
+    int32_t node[3];
+    int which[3], count = 0;
+    double dense[6 * 6];
+    for (int A = 0; A < 3; A++)
+        if (p->number[corner[A]] >= 0) which[count] = A, node[count++] = p->number[corner[A]];
+    for (int r = 0; r < 2 * count; r++)
+        for (int c = 0; c < 2 * count; c++) {
+            const int A = which[r / 2], B = which[c / 2], i = r % 2, j = c % 2;
+            // Of symmetric tangents there are K_ij for i <= j, and of i = j not all before the diagonal.
+            const bool turned = !p->whole && (i > j || (i == j && A > B));
+            const int pair = p->whole ? 2 * i + j : i + j;
+            dense[r * 2 * count + c] = (double)K[pair * plane + (turned ? B * stride + A : A * stride + B)];
+        }
+    brunt_block_matrix_add(m, node, count, dense);
+}
+
 typedef struct matrix_work {
     brunt_mpm_potential *p;
     brunt_block_matrix *m;
     const int32_t *block; // of the colour
 } matrix_work;
 
-BRUNT_INLINE void add_block(int dim, int order, const matrix_work *work, int32_t b, int worker) {
+BRUNT_INLINE void add_block(int dim, int kernel, const matrix_work *work, int32_t b, int worker) {
     const brunt_mpm_potential *p = work->p;
     const brunt_grid *grid = &p->body->grid;
     const brunt_block *block = &grid->blocks[b];
-    const int side = dim == 3 ? 4 : 8, span = side + order;
     real *K = (real *)(p->matrix + worker * p->matrix_size);
     block_rows rows;
     rows.place = p->place + worker * p->place_size;
-    find_rows(dim, order, p, block, work->m, brunt_block_matrix_marks(work->m, worker), &rows);
+    if (kernel != BRUNT_GRID_MESH)
+        find_rows(dim, kernel, p, block, work->m, brunt_block_matrix_marks(work->m, worker), &rows);
     for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
         const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS + bin;
         if (start[0] == start[1]) continue;
-        const int x = dim == 3 ? bin >> 4 : bin >> 3, y = dim == 3 ? bin >> 2 & 3 : bin & 7, z = bin & 3;
-        bin_sums(dim, order, p, block, start, K);
-        add_bin(p->whole, dim, order, &rows, dim == 3 ? (x * span + y) * span + z : x * span + y, K);
+        bin_sums(dim, kernel, p, block, start, K);
+        if (kernel == BRUNT_GRID_MESH)
+            add_triangle(p, corners_of(grid, block) + 3 * bin, K, work->m);
+        else
+            add_bin(p->whole, dim, kernel, &rows, bin_base(dim, kernel, bin), K);
     }
 }
 
-#define INSTANCE(name, dim, order)                                                                                     \
+#define INSTANCE(name, dim, kernel)                                                                                    \
     static void potential_matrix_##name(const matrix_work *work, int32_t block, int worker) {                          \
-        add_block(dim, order, work, block, worker);                                                                    \
+        add_block(dim, kernel, work, block, worker);                                                                   \
     }
 MPM_INSTANCES(INSTANCE)
-#define FOUND(name, dim, order) [order][dim] = potential_matrix_##name,
+#define FOUND(name, dim, kernel) [kernel][dim] = potential_matrix_##name,
 typedef void block_instance(const matrix_work *work, int32_t block, int worker);
 static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
 
 static void add_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const matrix_work *work = context;
     const brunt_grid *grid = &work->p->body->grid;
-    block_instance *instance = instances[grid->order][grid->dim];
+    block_instance *instance = instances[grid->kernel][grid->dim];
     for (int64_t k = begin; k < end; k++) instance(work, work->block[k], worker);
 }
 
@@ -287,7 +310,7 @@ void brunt_mpm_add_matrix(brunt_mpm_potential *p, const brunt_team *team, brunt_
     BRUNT_ASSERT(team->threads <= p->threads);
     for (int colour = 0; colour < grid->corners; colour++) {
         matrix_work work = {p, m, p->coloured + p->colour_first[colour]};
-        brunt_parallel(team->threads, p->colour_first[colour + 1] - p->colour_first[colour], 1, add_blocks, &work,
-                       team->timer);
+        brunt_parallel(grid->mesh ? 1 : team->threads, p->colour_first[colour + 1] - p->colour_first[colour], 1,
+                       add_blocks, &work, team->timer);
     }
 }

@@ -12,6 +12,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "grid/background.h"
 
 enum { MISS_LIMIT = 1 << 16, BLOCK_GRAIN = 16 };
 
@@ -84,7 +85,16 @@ static bool find_bin(const brunt_grid *grid, const real *origin, real *const *x,
     return true;
 }
 
-static void find_places_of(job *j, range *r) {
+// The same of a mesh; false when it is outside of it.
+static bool find_triangle(const brunt_grid *grid, real *const *x, int64_t s, int32_t block[3], int *bin) {
+    const int32_t triangle = brunt_background_find(grid->mesh, (const double[2]){(double)x[0][s], (double)x[1][s]});
+    if (triangle < 0) return false;
+    block[0] = triangle / BRUNT_BLOCK_NODES, block[1] = block[2] = 0;
+    *bin = triangle % BRUNT_BLOCK_NODES;
+    return true;
+}
+
+BRUNT_INLINE void find_places_of(job *j, range *r, bool mesh) {
     const brunt_grid *grid = j->grid;
     brunt_particles *p = j->particles;
     real *const *x = brunt_kernel_position(p);
@@ -96,7 +106,7 @@ static void find_places_of(job *j, range *r) {
         int32_t block[3];
         int bin;
         if (p->id[s] < 0) continue;
-        if (!find_bin(grid, origin, x, s, block, &bin)) {
+        if (!(mesh ? find_triangle(grid, x, s, block, &bin) : find_bin(grid, origin, x, s, block, &bin))) {
             if (r->bad < 0) r->bad = s;
             continue;
         }
@@ -117,7 +127,11 @@ static void find_places_of(job *j, range *r) {
 static void find_places(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     job *j = context;
-    for (int64_t q = begin; q < end; q++) find_places_of(j, &j->ranges[q]);
+    for (int64_t q = begin; q < end; q++)
+        if (j->grid->mesh)
+            find_places_of(j, &j->ranges[q], true);
+        else
+            find_places_of(j, &j->ranges[q], false);
 }
 
 static int compare_keys(const void *a, const void *b) {
@@ -213,7 +227,7 @@ static void set_keys(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-static int fail_position(const brunt_particles *p, int64_t s, brunt_error *error) {
+static int fail_position(const brunt_grid *grid, const brunt_particles *p, int64_t s, brunt_error *error) {
     real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
     double place[3] = {0, 0, 0};
     bool finite = true;
@@ -223,8 +237,9 @@ static int fail_position(const brunt_particles *p, int64_t s, brunt_error *error
         error->id = p->id[s];
     }
     return brunt_fail(error, BRUNT_FAILED,
-                      finite ? "the particle is more than four million cells away from the origin of the grid"
-                             : "the position is not a finite number");
+                      !finite      ? "the position is not a finite number"
+                      : grid->mesh ? BRUNT_OUTSIDE_OF_MESH
+                                   : "the particle is more than four million cells away from the origin of the grid");
 }
 
 // United set of the blocks that are alive and needed: those with particles now, and the missing ones.
@@ -260,7 +275,7 @@ static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
     *moved = j->particles->holes || j->renewed, *missing = false;
     for (int q = 0; q < j->range_count; q++) {
         const range *r = &j->ranges[q];
-        if (r->bad >= 0) return fail_position(j->particles, r->bad, error);
+        if (r->bad >= 0) return fail_position(j->grid, j->particles, r->bad, error);
         if (r->lost)
             return brunt_fail_memory(error, "blocks of the grid that particles come to", (size_t)r->missing_count + 1,
                                      sizeof *r->missing);

@@ -23,6 +23,9 @@ typedef struct brunt_workspace {
 // Particles of block `block` to its scatter buffer: mass, momentum, and dt times internal force.
 typedef void brunt_p2g_fn(brunt_body *body, int32_t block, real dt);
 
+// p2g_triangles.c: the same over triangles, without forces and affine velocities, for implicit steps.
+brunt_p2g_fn brunt_p2g_triangles;
+
 // Velocity and its gradient from the grid to the particles of `block`, then their update: velocity, position,
 // deformation gradient, material. Fills body->report[block].
 typedef void brunt_g2p_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);

@@ -3,7 +3,8 @@
 #include "base/error.h"
 
 void brunt_transfers_make(brunt_transfers *t, const brunt_world_def *def) {
-    t->p2g = brunt_find_p2g(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->p2g = def->cells != BRUNT_QUADS ? brunt_p2g_triangles
+                                       : brunt_find_p2g(def->dimension, def->axisymmetric, def->kernel, def->transfer);
     t->total_p2g = brunt_find_total_p2g(def->dimension, def->kernel, def->transfer);
     t->total_g2p = brunt_find_total_g2p(def->dimension, def->kernel, def->transfer);
     t->g2p = brunt_find_g2p(def->dimension, def->axisymmetric, def->kernel, def->transfer);

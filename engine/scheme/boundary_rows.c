@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "grid/bspline.h"
+#include "grid/weigh.h"
 #include "linear/block_matrix.h"
 #include "materials/material.h"
 
@@ -40,27 +40,17 @@ static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const br
 // Adds a boundary particle, at distance `gap` from the body; *share: its weight on nodes that have mass.
 static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b,
                         const double way[3], double *share, brunt_error *error) {
-    const brunt_grid *grid = &rows->bodies->mpm[p->body].grid;
-    double w[3][4] = {{1}, {1}, {1}};
-    int32_t base[3] = {0, 0, 0};
+    const double x[3] = {b->x[0] + way[0], b->x[1] + way[1], b->x[2] + way[2]};
+    brunt_grid_weights at;
     *share = 0;
-    for (int a = 0; a < grid->dim; a++) {
-        const double at = (b->x[a] + way[a] - grid->origin[a]) / (double)grid->h;
-        base[a] = (int32_t)floor(at - 0.5 * (grid->order - 1));
-        brunt_bspline_weights(grid->order, at - base[a], w[a]);
+    brunt_grid_weigh(&rows->bodies->mpm[p->body].grid, x, b->weight, &at);
+    for (int k = 0; k < at.count; k++) {
+        const int32_t n =
+            at.weight[k] > 0 ? brunt_unknowns_node_at(rows->unknowns, rows->bodies, p->body, at.at[k]) : BRUNT_NONE;
+        if (n < 0) continue;
+        if (add_node(rows, p, b, n, at.weight[k], error)) return BRUNT_FAILED;
+        *share += at.weight[k];
     }
-    const int deep = grid->dim == 3 ? grid->order : 0;
-    for (int i = 0; i <= grid->order; i++)
-        for (int j = 0; j <= grid->order; j++)
-            for (int k = 0; k <= deep; k++) {
-                const int32_t at[3] = {base[0] + i, base[1] + j, base[2] + k};
-                const double weight = b->weight * w[0][i] * w[1][j] * w[2][k];
-                const int32_t n =
-                    weight > 0 ? brunt_unknowns_node_at(rows->unknowns, rows->bodies, p->body, at) : BRUNT_NONE;
-                if (n < 0) continue;
-                if (add_node(rows, p, b, n, weight, error)) return BRUNT_FAILED;
-                *share += weight;
-            }
     return BRUNT_OK;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "grid/background.h"
 #include "linear/block_matrix.h"
 #include "materials/material.h"
 
@@ -33,16 +34,55 @@ static bool find_run(const brunt_unknowns *u, const brunt_bodies *bodies, int i,
     return weak;
 }
 
-static int add_run(brunt_ghost *g, const int32_t *node, int length, double stiffness, brunt_error *error) {
+static int add_run(brunt_ghost *g, const int32_t *node, const double *share, int length, double stiffness,
+                   brunt_error *error) {
     const size_t runs = (size_t)g->runs, entries = (size_t)(g->runs ? g->first[g->runs] : 0);
     if (BRUNT_CAPACITY(g->first, runs + 2, runs + 1, "runs of nodes with little material", error) ||
         BRUNT_CAPACITY(g->stiffness, runs + 1, runs, "runs of nodes with little material", error) ||
+        BRUNT_CAPACITY(g->share, entries + RUN_LIMIT, entries, "nodes of runs with little material", error) ||
         BRUNT_CAPACITY(g->node, entries + RUN_LIMIT, entries, "nodes of runs with little material", error))
         return BRUNT_FAILED;
     memcpy(g->node + entries, node, (size_t)length * sizeof *node);
+    memcpy(g->share + entries, share, (size_t)length * sizeof *share);
     g->stiffness[runs] = stiffness;
     g->first[runs] = (int64_t)entries;
     g->first[++g->runs] = (int64_t)entries + length;
+    return BRUNT_OK;
+}
+
+// The four nodes of an edge between triangles: whether all are there, and one is weak.
+static bool find_edge(const brunt_unknowns *u, const brunt_bodies *bodies, int i, const int32_t edge[4],
+                      int32_t node[4]) {
+    const brunt_body *body = &bodies->mpm[i];
+    bool weak = false;
+    for (int k = 0; k < 4; k++) {
+        int32_t at[3];
+        brunt_grid_mesh_node(edge[k], at);
+        node[k] = brunt_unknowns_node_at(u, bodies, i, at);
+        if (node[k] < 0) return false;
+        weak = weak || u->mass[node[k]] < WEAK * (double)body->material.density * body->grid.mesh->area[edge[k]];
+    }
+    return weak;
+}
+
+// The weights of a triangle's corners, the ends of its edge and the node across it, at the node beyond.
+static void find_shares(const brunt_background *mesh, const int32_t edge[4], double share[4]) {
+    const double *p = mesh->node[edge[0]], *q = mesh->node[edge[1]], *r = mesh->node[edge[2]], *x = mesh->node[edge[3]];
+    const double whole = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    share[1] = -((x[0] - p[0]) * (r[1] - p[1]) - (x[1] - p[1]) * (r[0] - p[0])) / whole;
+    share[2] = -((q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])) / whole;
+    share[0] = -1 - share[1] - share[2], share[3] = 1;
+}
+
+static int add_edges(brunt_ghost *g, const brunt_bodies *bodies, int i, double stiffness, brunt_error *error) {
+    const brunt_background *mesh = bodies->mpm[i].grid.mesh;
+    for (int32_t e = 0; e < mesh->edge_count; e++) {
+        int32_t node[4];
+        double share[4];
+        if (!find_edge(g->unknowns, bodies, i, mesh->edge[e], node)) continue;
+        find_shares(mesh, mesh->edge[e], share);
+        if (add_run(g, node, share, 4, stiffness, error)) return BRUNT_FAILED;
+    }
     return BRUNT_OK;
 }
 
@@ -51,6 +91,7 @@ static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i, brunt_err
     const brunt_body *body = &bodies->mpm[i];
     const double c = (double)body->material.wave_speed, h = (double)body->grid.h,
                  stiffness = PARAMETER * (double)body->material.density * c * c * pow(h, u->dim - 2);
+    if (body->grid.mesh) return add_edges(g, bodies, i, stiffness, error);
     for (int64_t k = 0; k < (int64_t)body->grid.slot_count * BRUNT_BLOCK_NODES; k++) {
         const int32_t n = u->number[i][k];
         int32_t at[3], node[RUN_LIMIT];
@@ -61,7 +102,8 @@ static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i, brunt_err
         for (int a = 0; a < 3; a++)
             at[a] = body->grid.slots[k / BRUNT_BLOCK_NODES].coord[a] * body->grid.side + local[a];
         for (int axis = 0; axis < u->dim; axis++)
-            if (find_run(u, bodies, i, at, axis, node) && add_run(g, node, body->grid.order + 2, stiffness, error))
+            if (find_run(u, bodies, i, at, axis, node) &&
+                add_run(g, node, difference[body->grid.order], body->grid.order + 2, stiffness, error))
                 return BRUNT_FAILED;
     }
     return BRUNT_OK;
@@ -88,19 +130,17 @@ int brunt_ghost_step(brunt_ghost *g, const brunt_world *world, const brunt_unkno
 }
 
 void brunt_ghost_free(brunt_ghost *g) {
-    brunt_free(g->first), brunt_free(g->node), brunt_free(g->stiffness), brunt_free(g->seen);
+    brunt_free(g->first), brunt_free(g->node), brunt_free(g->share), brunt_free(g->stiffness), brunt_free(g->seen);
     *g = (brunt_ghost){.runs = 0};
 }
 
 size_t brunt_ghost_bytes(const brunt_ghost *g) {
-    return g->first_capacity + g->node_capacity + g->stiffness_capacity + g->seen_capacity;
+    return g->first_capacity + g->node_capacity + g->share_capacity + g->stiffness_capacity + g->seen_capacity;
 }
 
 // ------------------------------------------------------------------------------------------ the term
 
-static const double *differences(const brunt_ghost *g, int64_t run) {
-    return difference[g->first[run + 1] - g->first[run] - 2];
-}
+static const double *differences(const brunt_ghost *g, int64_t run) { return g->share + g->first[run]; }
 
 // q . u of a component.
 static double bend(const brunt_ghost *g, int64_t run, int a, const double *u) {

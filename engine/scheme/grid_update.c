@@ -6,6 +6,15 @@
 #include "grid/node.h"
 #include "world/world.h"
 
+// Nodes of a mesh collect what the triangles around have for them, in their order.
+static void sum_of_triangles(const brunt_grid *grid, int32_t slot) {
+    real *to = brunt_slot_nodes(grid, slot);
+    const int32_t *first = grid->source_first + (int64_t)slot * BRUNT_BLOCK_NODES;
+    for (int k = 0; k < BRUNT_BLOCK_NODES; k++, to += BRUNT_NODE_REALS)
+        for (int32_t q = first[k]; q < first[k + 1]; q++)
+            node8_store(to, node8_load(to) + node8_load(grid->p2g_buffer + (size_t)grid->source[q] * BRUNT_NODE_REALS));
+}
+
 // Each slot collects what the blocks around it have for it, always in the order of the corners: no locks, and the same
 // bits for any number of threads.
 void brunt_grid_sum(void *context, int64_t begin, int64_t end, int worker) {
@@ -18,6 +27,7 @@ void brunt_grid_sum(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t s = begin; s < end; s++) {
         real *nodes = brunt_slot_nodes(grid, (int32_t)s);
         memset(nodes, 0, BRUNT_BLOCK_NODES * BRUNT_NODE_REALS * sizeof(real));
+        if (grid->mesh) sum_of_triangles(grid, (int32_t)s);
         for (int c = 0; c < grid->corners; c++) {
             int32_t b = grid->slots[s].source[c];
             if (b < 0) continue;

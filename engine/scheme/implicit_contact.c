@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "contact/barrier/barrier_function.h"
 #include "grid/bspline.h"
+#include "grid/weigh.h"
 #include "materials/material.h"
 
 static const double CREEP = 1e-5; // of the slowest wave speed: the slip speed by default
@@ -407,6 +408,20 @@ static int weigh(const brunt_grid *grid, const brunt_block *block, int bin, cons
     return count;
 }
 
+// The same of triangles.
+static int weigh_in_triangle(const brunt_grid *grid, const double x[3], const int32_t *number, int32_t *node,
+                             double *weight) {
+    brunt_grid_weights at;
+    int count = 0;
+    brunt_grid_weigh(grid, x, 1, &at);
+    for (int k = 0; k < at.count; k++) {
+        const int64_t place = brunt_grid_number(grid, at.at[k]);
+        if (place < 0 || number[place] < 0 || !(at.weight[k] > 0)) continue;
+        node[count] = number[place], weight[count++] = at.weight[k];
+    }
+    return count;
+}
+
 typedef struct point_job {
     brunt_implicit_contact *c;
     brunt_body *body;
@@ -426,7 +441,10 @@ static void add_points(const point_job *job, int32_t block_index, int32_t point)
         for (int a = 0; a < 3; a++) c->x[point][a] = a < p->dim ? (double)x[a][s] : 0;
         c->area[point] = brunt_barrier_particle_area(p->dim, (double)volume[s]);
         c->owner[point] = job->body->index;
-        const int count = weigh(grid, block, p->bin[s], c->x[point], job->number, c->point_node + at, c->weight + at);
+        const int count =
+            grid->kernel > BRUNT_CUBIC
+                ? weigh_in_triangle(grid, c->x[point], job->number, c->point_node + at, c->weight + at)
+                : weigh(grid, block, p->bin[s], c->x[point], job->number, c->point_node + at, c->weight + at);
         c->first[point + 1] = at + count;
     }
 }

@@ -129,7 +129,7 @@ static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i, bru
     double most = 0;
     uint8_t *sloped = NULL;
     if (grid->order == BRUNT_LINEAR && BRUNT_NEW(sloped, nodes + 1, "marks of grid nodes", error)) return BRUNT_FAILED;
-    if (sloped) brunt_grid_mark_reached(grid, sloped);
+    if (sloped) brunt_body_mark_reached(&bodies->mpm[i], sloped);
     for (int64_t k = 0; k < nodes; k++) most = fmax(most, (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS]);
     int64_t next = u->count;
     for (int64_t k = 0; k < nodes; k++) {
@@ -175,7 +175,7 @@ static void take_grid(brunt_unknowns *u, const brunt_grid *grid, const int32_t *
         const real *node = grid->nodes + k * BRUNT_NODE_REALS;
         const size_t n = (size_t)number[k];
         double x[3];
-        brunt_node_position(grid, grid->slots[k / BRUNT_BLOCK_NODES].coord, (int)(k % BRUNT_BLOCK_NODES), x);
+        brunt_grid_node_place(grid, (int32_t)(k / BRUNT_BLOCK_NODES), (int)(k % BRUNT_BLOCK_NODES), x);
         u->mass[n] += (double)node[BRUNT_NODE_MASS];
         for (int a = 0; a < u->dim; a++) {
             u->position[n * (size_t)u->dim + (size_t)a] = x[a];

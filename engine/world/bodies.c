@@ -9,6 +9,7 @@
 #include "base/sweep.h"
 #include "geometry/axis.h"
 #include "geometry/fill.h"
+#include "mpm/sort.h"
 #include "world/create.h"
 
 static const double TOUCHING = 1e-6; // spacings: bodies closer than that touch, they do not overlap
@@ -227,6 +228,26 @@ static int set_erosion(const brunt_body_def *from, int32_t count, brunt_body *bo
     return BRUNT_NEW(body->rank, count + 1, "ranks of particles that erode", error);
 }
 
+static int make_background(brunt_background *background, const brunt_mesh *mesh, brunt_error *error) {
+    brunt_mesh_quality quality;
+    brunt_error inner = {.code = BRUNT_OK};
+    const int status = brunt_mesh_check(mesh, &quality, &inner);
+    if (status) return brunt_fail(error, status, "grid.cells.mesh: %.400s", inner.message);
+    return brunt_background_make(background, mesh, error);
+}
+
+static int check_in_mesh(const brunt_body *body, brunt_error *error) {
+    const brunt_particles *p = &body->particles;
+    real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
+    for (int64_t s = 0; body->grid.mesh && s < p->slots; s++) {
+        const double at[2] = {(double)x[0][s], (double)x[1][s]};
+        if (p->id[s] >= 0 && brunt_background_find(body->grid.mesh, at) < 0)
+            REFUSE("bodies.%s: particle %lld at (%.6g, %.6g) m: " BRUNT_OUTSIDE_OF_MESH, body->name,
+                   (long long)p->id[s], at[0], at[1]);
+    }
+    return BRUNT_OK;
+}
+
 static int make_particles(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                           const brunt_filled *filled, const double origin[3], int index, brunt_error *error) {
     const brunt_body_def *from = order[index];
@@ -248,7 +269,10 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     memcpy(needs.models, body->material.model, sizeof needs.models);
     brunt_particles_init(&body->particles, def->dimension, def->axisymmetric ? 3 : def->dimension, &needs);
     brunt_grid_init(&body->grid, def->dimension, (int)def->kernel, def->cell, origin);
-    return fill_body(from, filled, body, error);
+    if (def->cells != BRUNT_QUADS)
+        brunt_grid_use_triangles(&body->grid, def->cells == BRUNT_MESH_CELLS ? &world->bodies.background : NULL);
+    status = fill_body(from, filled, body, error);
+    return status ? status : check_in_mesh(body, error);
 }
 
 int brunt_bodies_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
@@ -265,6 +289,8 @@ int brunt_bodies_make(brunt_world *world, const brunt_world_def *def, const brun
         double cells = status || isinf(low[a]) ? 0 : floor((low[a] - def->origin[a]) / def->cell);
         origin[a] = def->origin[a] + (fabs(cells) > 1024 ? cells * def->cell : 0);
     }
+    if (!status && def->cells == BRUNT_MESH_CELLS)
+        status = make_background(&world->bodies.background, &def->background, error);
     for (int i = 0; i < n && !status; i++)
         status = order[i]->method == BRUNT_MPM ? make_particles(world, def, order, &filled[i], origin, i, error)
                                                : brunt_make_elements(world, def, order[i], i, error);

@@ -250,11 +250,21 @@ static int check_end(const brunt_world_def *def, brunt_error *error) {
     return BRUNT_OK;
 }
 
+static int check_background(const brunt_mesh *mesh, brunt_error *error) {
+    if (!mesh->node_count) REFUSE("grid.cells.mesh: there is none");
+    BRUNT_TRY(check_mesh("grid.cells", mesh, error));
+    if (mesh->kind != BRUNT_TRI3)
+        REFUSE("grid.cells.mesh: its elements are of kind %s, tri3 is wanted", brunt_element_name(mesh->kind));
+    return BRUNT_OK;
+}
+
 static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt_error *error) {
     if (particles && (!(def->cell > 0) || !isfinite(def->cell)))
         REFUSE("grid.cell: %g m is not a positive length", def->cell);
     if ((int)def->kernel < BRUNT_LINEAR || def->kernel > BRUNT_CUBIC)
         REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
+    BRUNT_TRY(brunt_check_choice("grid", ".cells", (unsigned)def->cells, BRUNT_MESH_CELLS + 1, error));
+    if (def->cells == BRUNT_MESH_CELLS) BRUNT_TRY(check_background(&def->background, error));
     if ((unsigned)def->transfer > BRUNT_APIC) REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
     if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
     if (!(def->cfl >= 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);

@@ -6,6 +6,7 @@
 
 #include "boundary/kinds.h"
 #include "contact/methods/method.h"
+#include "contact/planes/condition.h"
 #include "materials/material.h"
 #include "world/named_pairs.h"
 
@@ -168,6 +169,25 @@ static void look_at_contact(const brunt_world_def *def, refusals *r) {
     look_at_points(def, r);
 }
 
+// Triangles are linear, and lie as their diagonals and their mesh have them: nothing is the mirror image of anything.
+static void look_at_cells(const brunt_world_def *def, refusals *r) {
+    if (def->cells == BRUNT_QUADS) return;
+    set_owner(r, "grid");
+    if (!brunt_scheme_minimises(def->scheme))
+        say(r, ".cells", "triangles are for time.scheme: implicit and static; explicit steps go with quads");
+    if (def->dimension != 2) say(r, ".cells", "triangles are for two dimensions; in three there are quads alone");
+    if (def->kernel != BRUNT_LINEAR) say(r, ".kernel", "triangles are linear: kernel: linear is wanted");
+    if (def->transfer == BRUNT_APIC && def->scheme == BRUNT_IMPLICIT)
+        say(r, ".transfer", "apic: on triangles there are flip and pic");
+    for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(def, &e);) {
+        if (!e.kind->is_plane || !brunt_conditions[((const brunt_plane_def *)e.entry)->condition].symmetry) continue;
+        name_boundary(r, e.w, e.kind->name(e.entry));
+        say(r, ".condition",
+            "a plane of symmetry mirrors cells, which triangles do not bear: a line with condition: "
+            "slip is wanted");
+    }
+}
+
 static void look_at_implicit(const brunt_world_def *def, refusals *r) {
     look_at_solver(def, r);
     look_at_time(def, r);
@@ -255,6 +275,7 @@ void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse,
     const bool minimises = brunt_scheme_minimises(def->scheme);
     if (def->scheme == BRUNT_STATIC) look_at_static(def, &r);
     if (minimises) look_at_implicit(def, &r);
+    look_at_cells(def, &r);
     look_at_boundaries(def, &r);
     look_at_methods(def, &r);
     if (minimises) look_at_contact(def, &r);

@@ -50,6 +50,7 @@ void brunt_world_def_free(brunt_world_def *def) {
         for (int a = 0; a < 3; a++) brunt_free(def->bodies[i].grading[a].points);
     }
     for (int k = 0; k < brunt_boundary_kind_count; k++) brunt_boundary_kinds[k]->free(def);
+    brunt_mesh_free(&def->background);
     brunt_free(def->materials);
     brunt_free(def->bodies);
     brunt_free(def->detonations);

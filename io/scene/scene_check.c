@@ -352,8 +352,7 @@ static void check_value(scene_reader *reader, scene_node *node, const scene_key 
     case SCENE_NAMED: check_named(reader, node, row); break;
     case SCENE_ENTRIES: check_entries(reader, node, row); break;
     case SCENE_WORD:
-        // grid.transfer: a word, or a map whose one key is such a word with a number of its own.
-        if (node->kind == SCENE_MAP && strcmp(row->path, "grid.transfer") == 0)
+        if (node->kind == SCENE_MAP && brunt_scene_word_or_map(row))
             check_group(reader, node, row->path);
         else
             brunt_check_single_value(reader, node, row);

@@ -48,6 +48,8 @@ static const scene_key own_rows[] = {
     {"grid.cell", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "edge of a cell; no body may be thinner (by more than a millionth, for decimals)", .field = SCENE_FIELD(brunt_world_def, cell)},
     {"grid.origin", SCENE_VECTOR, "m", "0", NONE, "a point where a grid node lies", .field = SCENE_FIELD(brunt_world_def, origin)},
     {"grid.kernel", SCENE_WORD, NULL, "quadratic", ANY, "linear|quadratic|cubic", 0, false, "B-spline that links particles to nodes; linear goes with flip, apic makes energy on it"},
+    {"grid.cells", SCENE_WORD, NULL, "quads", ANY, "quads|triangles", 0, false, "2D with scheme implicit or static, kernel linear and transfer flip or pic: triangles, in two of which a diagonal cuts each cell; {mesh: FILE} takes those of a mesh, and `cell` is the length that spacing and pieces of lines go by"},
+    {"grid.cells.mesh", SCENE_TEXT, NULL, OPTIONAL, NONE, "a gmsh file (.msh 2.2 or 4.1) with triangles; its path counts from the scene's folder; no material point may leave it"},
     {"grid.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|flip|apic", 0, false, "velocity transfer; {flip: SHARE} sets the share of flip"},
     {"grid.transfer.flip", SCENE_REAL, "1", "0.99", 0, 1, false, false, NULL, 0, true, "share of a particle's own velocity that is kept"},
 
@@ -315,6 +317,10 @@ const brunt_model *const *brunt_scene_models(const char *path, int *count) {
     }
     *count = brunt_strength_model_count;
     return brunt_strength_models;
+}
+
+bool brunt_scene_word_or_map(const scene_key *row) {
+    return strcmp(row->path, "grid.transfer") == 0 || strcmp(row->path, "grid.cells") == 0;
 }
 
 const brunt_model *brunt_scene_model(const char *path, const char *name) {

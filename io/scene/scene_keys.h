@@ -121,6 +121,8 @@ const scene_key *brunt_format_row(const scene_format *format, const char *path);
 const scene_key *brunt_scene_row(const char *path); // of scenes
 // The last part of a row's path when the row is a child of `parent`, else NULL.
 const char *brunt_scene_child_key(const scene_key *row, const char *parent);
+// Whether a map may stand for the word, whose one key is such a word with a value of its own.
+bool brunt_scene_word_or_map(const scene_key *row);
 // The models behind a SCENE_PARAMETERS row or a "model" row.
 const brunt_model *const *brunt_scene_models(const char *path, int *count);
 // The one of them by name, other accepted spellings included; NULL: none.

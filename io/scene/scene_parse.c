@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "io/mesh/gmsh.h"
 
 void brunt_copy_text(scene_reader *reader, const scene_node *node, char *out, size_t size) {
     if (!node || !node->good || !node->text) return;
@@ -128,6 +129,25 @@ static void fill_time(scene_reader *reader) {
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
 }
 
+// What the grid is of: cells, cells cut in two, or the triangles of a file.
+static void fill_cells(scene_reader *reader, const scene_node *grid) {
+    brunt_world_def *world = &reader->scene->world;
+    scene_node *cells = brunt_tree_child(grid, "cells"), *mesh;
+    char path[BRUNT_SCENE_PATH];
+    brunt_error error = {0};
+    world->cells = (brunt_cells)(int)brunt_real_of(grid, "cells", BRUNT_QUADS);
+    if (!cells || cells->kind != SCENE_MAP) return;
+    world->cells = BRUNT_MESH_CELLS;
+    mesh = brunt_tree_child(cells, "mesh");
+    if (!mesh) brunt_tree_complain(reader->tree, cells, "{mesh: FILE} is wanted, or one of the words quads, triangles");
+    if (!mesh || !mesh->good || reader->dimension != 2 || !brunt_find_mesh(reader, mesh, path)) return;
+    if (brunt_gmsh_read(path, "", 2, &world->background, reader->warnings, &error))
+        brunt_tree_complain(reader->tree, mesh, "%s", error.message);
+    else if (world->background.kind != BRUNT_TRI3)
+        brunt_tree_complain(reader->tree, mesh, "its elements are of kind %s, tri3 is wanted",
+                            brunt_element_name(world->background.kind));
+}
+
 // Only material points need the grid; one beside finite elements alone is accepted, so that a method can be changed by
 // an override.
 static void fill_grid(scene_reader *reader) {
@@ -141,6 +161,7 @@ static void fill_grid(scene_reader *reader) {
     if (!grid || grid->kind != SCENE_MAP) return;
     brunt_fill_fields(reader, grid, "grid", 0, world);
     world->kernel = (brunt_kernel)(BRUNT_LINEAR + (int)brunt_real_of(grid, "kernel", 1));
+    fill_cells(reader, grid);
     scene_node *transfer = brunt_tree_child(grid, "transfer");
     if (!transfer) return;
     if (transfer->kind == SCENE_SCALAR && transfer->good && transfer->value[0] == BRUNT_FLIP) {

@@ -145,9 +145,9 @@ static void schema_entries(FILE *out, const scene_key *row) {
     fputc('}', out);
 }
 
-// A word, or where a word may be a map with a number of its own, either.
+// A word, or where a word may be a map with a value of its own, either.
 static void schema_choice(FILE *out, const scene_key *row) {
-    const bool map = strcmp(row->path, "grid.transfer") == 0;
+    const bool map = brunt_scene_word_or_map(row);
     if (map) fputs("\"anyOf\": [{", out);
     schema_words(out, row);
     if (!map) return;

@@ -12,6 +12,7 @@
 #define E fem_E
 #define nu fem_nu
 #include "tests/support/membrane_bodies.h"
+#include "tests/support/triangle_mesh.h"
 #include "world/world.h"
 
 static double between(uint64_t *seed) { // -1 .. 1
@@ -280,9 +281,10 @@ START_TEST(membranes) {
 END_TEST
 
 // A box of points that has been cut by no lattice: sorted, on its grid.
-static brunt_world *points_world(int dim, int order, brunt_transfer transfer) {
+static brunt_world *points_world(int dim, int kernel, brunt_transfer transfer) {
     brunt_world_def def = def_begin(dim, 0.1);
-    def.kernel = (brunt_kernel)order;
+    use_kernel(&def, kernel, triangle_mesh(-0.1, -0.1, 8, 7, 0.1));
+    if (kernel > BRUNT_CUBIC) def.scheme = BRUNT_IMPLICIT;
     def.transfer = transfer;
     def.step = 1e-5;
     def_material(&def, "neo-hookean", 1000, 2e6, 0.3);
@@ -331,10 +333,12 @@ static void any_numbers(const subject *s, brunt_mpm_potential *p, int32_t *numbe
 }
 
 START_TEST(points) {
-    const int dim = _i % 2 + 2, order = _i / 2 % 3 + 1;
+    const bool triangles = _i >= 18; // of cells, of a mesh
+    const int dim = triangles ? 2 : _i % 2 + 2, kernel = triangles ? BRUNT_GRID_CUT + _i % 2 : _i / 2 % 3 + 1,
+              order = triangles ? 1 : kernel;
     const brunt_transfer transfers[] = {BRUNT_APIC, BRUNT_FLIP, BRUNT_PIC};
-    const brunt_transfer transfer = transfers[_i / 6];
-    brunt_world *w = points_world(dim, order, transfer);
+    const brunt_transfer transfer = transfers[triangles ? 1 + (_i - 18) / 2 : _i / 6];
+    brunt_world *w = points_world(dim, kernel, transfer);
     brunt_body *body = &w->bodies.mpm[0];
     const brunt_grid *grid = &body->grid;
     brunt_error error;
@@ -344,16 +348,16 @@ START_TEST(points) {
     for (int32_t k = 0; k < grid->slot_count * BRUNT_BLOCK_NODES; k++) number[k] = count++;
     ck_assert_int_eq(brunt_mpm_potential_step(p, &three, number, 1e-3, &error), BRUNT_OK);
     char name[40];
-    snprintf(name, sizeof name, "points %dD order %d", dim, order);
+    snprintf(name, sizeof name, "points %dD kernel %d", dim, kernel);
     subject s = {.name = name, .term = brunt_mpm_potential_term(p), .dim = dim, .nodes = count, .size = 0.01};
     s.place = numbers(&s);
     for (int32_t slot = 0; slot < grid->slot_count; slot++)
         for (int n = 0; n < BRUNT_BLOCK_NODES; n++) {
             double x[3];
-            brunt_node_position(grid, grid->slots[slot].coord, n, x);
+            brunt_grid_node_place(grid, slot, n, x);
             for (int i = 0; i < dim; i++) s.place[(int64_t)number[slot * BRUNT_BLOCK_NODES + n] * dim + i] = x[i];
         }
-    if (_i < 6) {
+    if (_i < 6 || (triangles && _i < 20)) {
         derivatives(&s);
         free_motions(&s);
         volume_limit(&s);
@@ -432,7 +436,7 @@ int main(void) {
     if (sizeof(real) == sizeof(double)) { // what implicit steps are of
         ADD_LOOP(elements, 8);
         ADD_LOOP(membranes, 18);
-        ADD_LOOP(points, 18);
+        ADD_LOOP(points, 22);
     }
     return suite_main(suite);
 }

@@ -51,6 +51,11 @@ typedef struct brunt_newton_def {
 } brunt_newton_def;
 
 // B-splines of the grid, by order.
+typedef enum brunt_cells {
+    BRUNT_QUADS,     // hexahedra in three dimensions
+    BRUNT_TRIANGLES, // each cell is cut in two by its diagonal
+    BRUNT_MESH_CELLS // triangles of a mesh, beyond which no material point may come
+} brunt_cells;
 typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
 // PIC: Harlow 1964, "The particle-in-cell computing method for fluid dynamics". FLIP: Brackbill and Ruppel 1986, "FLIP:
 // a method for adaptively zoned, particle-in-cell calculations of fluid flows in two dimensions"; points keep the share
@@ -137,6 +142,8 @@ typedef struct brunt_world_def {
     double cell;       // [m] > 0 of the grid; 0 where no body is of material points
     double origin[3];  // [m] where a grid node lies; default 0
     brunt_kernel kernel;     // default quadratic
+    brunt_cells cells;       // default quads; others: implicit and static in two dimensions, linear, not with APIC
+    brunt_mesh background;   // of BRUNT_TRI3, for BRUNT_MESH_CELLS; owned
     brunt_transfer transfer; // default APIC
     double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
     double cfl;     // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
