@@ -9,7 +9,8 @@ two layers. The mesh is its own mirror image about both axes.
 import sys
 from cmath import rect
 from math import pi
-from struct import pack
+
+from gmsh_triangles import write
 
 radius, rim = float(sys.argv[1]), int(sys.argv[2])
 layers = int(sys.argv[3]) if len(sys.argv) > 3 else 2
@@ -48,15 +49,7 @@ def main():
     first, n = outer
     nodes.append(0j)
     triangles += [(first + k, first + (k + 1) % n, len(nodes) - 1) for k in range(n)]
-    out = sys.stdout.buffer
-    out.write(b'$MeshFormat\n2.2 1 8\n' + pack("<i", 1) + b'\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 "disk"\n$EndPhysicalNames\n')
-    out.write(b"$Nodes\n%d\n" % len(nodes))
-    for k, z in enumerate(nodes, 1):
-        z *= radius
-        out.write(pack("<iddd", k, float(f"{z.real:.9g}"), float(f"{z.imag:.9g}"), 0))
-    out.write(b"\n$EndNodes\n$Elements\n%d\n" % len(triangles) + pack("<iii", 2, len(triangles), 2))
-    for k, corners in enumerate(triangles, 1):
-        out.write(pack("<6i", k, 1, 1, *(c + 1 for c in corners)))
-    out.write(b"\n$EndElements\n")
+    write("disk", [[float(f"{c:.9g}") for c in (radius * z.real, radius * z.imag)] for z in nodes], triangles)
+
 
 main()
