@@ -233,6 +233,10 @@ static int make_background(brunt_background *background, const brunt_mesh *mesh,
     brunt_error inner = {.code = BRUNT_OK};
     const int status = brunt_mesh_check(mesh, &quality, &inner);
     if (status) return brunt_fail(error, status, "grid.cells.mesh: %.400s", inner.message);
+    const int32_t most = BRUNT_COORD_LIMIT * BRUNT_BLOCK_NODES;
+    if (mesh->node_count > most || mesh->element_count > most)
+        REFUSE("grid.cells.mesh: %d nodes and %d triangles, %d are the most", mesh->node_count, mesh->element_count,
+               most);
     return brunt_background_make(background, mesh, error);
 }
 

@@ -1,6 +1,7 @@
 // Meshes of triangles that lie behind material points.
 #pragma once
 
+#include "grid/grid.h"
 #include "tests/support/def_world.h"
 
 // A place off the lattice by up to a quarter, by its number alone.
