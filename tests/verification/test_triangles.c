@@ -197,6 +197,22 @@ START_TEST(hangs) {
 }
 END_TEST
 
+// Of 2 x 2 points a cell every second one lies on the diagonal: they pull at both of its sides alike, and the bar is as
+// long as on quadrangles.
+START_TEST(on_diagonals) {
+    double way[2];
+    for (int k = 0; k < 2; k++) {
+        brunt_world_def def = bar(k ? BRUNT_GRID_CUT : BRUNT_LINEAR, 0, 4);
+        go_static(&def, 1);
+        brunt_world *world = world_take(&def);
+        world_steps(world, 1);
+        way[k] = world_sums(world, 0).centre[0] - 2;
+        brunt_world_destroy(world);
+    }
+    ck_assert_double_eq_tol(way[1] / way[0], 1, 1e-3);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ a beam that bends
 
 typedef struct bent {
@@ -431,6 +447,7 @@ int main(void) {
     ADD_LOOP(weights, 8);
     ADD_LOOP(found, 1);
     ADD_LOOP(hangs, 8);
+    ADD_LOOP(on_diagonals, 1);
     ADD_LOOP(bends, 3);
     ADD_LOOP(boundary_particles, 4);
     ADD_LOOP(slope, 4);
