@@ -68,6 +68,8 @@ static void take_scale(struct brunt_implicit *m) {
     m->scale = (brunt_load_scale){.least = fmax(within, loads), .rounding = ROUNDINGS * DBL_EPSILON * rounding};
 }
 
+static const double STALLS = 0.5; // of what was left before
+
 double brunt_static_unbalance(void *context, const double *gradient) {
     struct brunt_implicit *m = context;
     double left = 0, reactions = 0;
@@ -75,7 +77,10 @@ double brunt_static_unbalance(void *context, const double *gradient) {
         *(m->unknowns.held[k] ? &reactions : &left) += fabs(gradient[k]);
     if (m->holds) reactions += brunt_boundary_rows_forces(&m->rows, m->field.u);
     const double act = fmax(m->scale.least, reactions), share = act > 0 ? left / act : left > 0 ? 1 : 0;
-    const double counts = left <= m->scale.rounding ? 0 : share;
+    // What rounding of all forces makes one body may hold alone: it is none as long as iterations lessen it.
+    if (left != m->scale.left) m->scale.before = m->scale.left, m->scale.left = left; // else it is where it was
+    const bool rounding = left <= m->scale.rounding && left > STALLS * m->scale.before;
+    const double counts = rounding ? 0 : share;
     // Where it has converged its stability is asked for next: that bodies which contact alone holds slide on its
     // ripples is no matter.
     m->proximal.unheld =
