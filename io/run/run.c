@@ -267,23 +267,38 @@ static int make_scene_text(run *r, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Of the meshes that were read from files: a run must not go on with another mesh that happens to be of the same size.
-static uint64_t hash_meshes(const brunt_scene *scene) {
-    uint64_t hash = 0;
-    for (int32_t b = 0; b < scene->world.body_count; b++) {
-        const brunt_mesh *mesh = &scene->world.bodies[b].mesh;
-        for (int64_t i = 0; i < 3 * (int64_t)mesh->node_count; i++) {
-            uint64_t word;
-            memcpy(&word, &mesh->nodes[i / 3][i % 3], sizeof word);
-            hash = brunt_hash_add(hash, word);
-        }
-        int64_t corners = mesh->element_count ? (int64_t)mesh->element_count * brunt_element_nodes(mesh->kind) : 0;
-        for (int64_t i = 0; i < corners; i++) hash = brunt_hash_add(hash, (uint64_t)mesh->elements[i]);
-        for (int32_t g = 0; g < mesh->group_count; g++)
-            for (int32_t n = 0; n < mesh->groups[g].count; n++)
-                hash = brunt_hash_add(hash, (uint64_t)mesh->groups[g].nodes[n]);
+static uint64_t hash_places(uint64_t hash, const double (*place)[3], int32_t count) {
+    for (int64_t i = 0; i < 3 * (int64_t)count; i++) {
+        uint64_t word;
+        memcpy(&word, &place[i / 3][i % 3], sizeof word);
+        hash = brunt_hash_add(hash, word);
     }
     return hash;
+}
+
+static uint64_t hash_mesh(uint64_t hash, const brunt_mesh *mesh) {
+    hash = hash_places(hash, (const double(*)[3])mesh->nodes, mesh->node_count);
+    int64_t corners = mesh->element_count ? (int64_t)mesh->element_count * brunt_element_nodes(mesh->kind) : 0;
+    for (int64_t i = 0; i < corners; i++) hash = brunt_hash_add(hash, (uint64_t)mesh->elements[i]);
+    for (int32_t g = 0; g < mesh->group_count; g++)
+        for (int32_t n = 0; n < mesh->groups[g].count; n++)
+            hash = brunt_hash_add(hash, (uint64_t)mesh->groups[g].nodes[n]);
+    return hash;
+}
+
+// Of the meshes that were read from files, of bodies, boundaries and the grid: a run must not go on with another mesh
+// that happens to be of the same size.
+static uint64_t hash_meshes(const brunt_scene *scene) {
+    const brunt_world_def *world = &scene->world;
+    uint64_t hash = 0;
+    for (int32_t b = 0; b < world->body_count; b++) hash = hash_mesh(hash, &world->bodies[b].mesh);
+    for (int32_t k = 0; k < world->surface_count && world->dimension == 3; k++) { // lines stand in the scene
+        const brunt_boundary_surface_def *s = &world->surfaces[k];
+        hash = hash_places(hash, (const double(*)[3])s->point, s->point_count);
+        for (int64_t i = 0; i < 4 * (int64_t)s->facet_count; i++)
+            hash = brunt_hash_add(hash, (uint64_t)s->facet[i / 4][i % 4]);
+    }
+    return hash_mesh(hash, &world->background);
 }
 
 // Makes world, history and measures. Nothing on disk is touched.

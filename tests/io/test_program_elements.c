@@ -237,6 +237,36 @@ START_TEST(mesh_files) {
 }
 END_TEST
 
+// Meshes of boundaries and of the grid are of a run as those of bodies are.
+START_TEST(mesh_files_of_boundaries_and_grid) {
+    static const char
+        plane[] = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"slope\"\n$EndPhysicalNames\n"
+                  "$Nodes\n3\n1 -3 -3 0\n2 3 -3 0\n3 0 3 0\n$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 3\n"
+                  "$EndElements\n",
+        falls[] = "brunt: 1\ndimension: 3\ntime: {end: 0.004}\ngrid: {cell: 0.1}\n"
+                  "materials: {m: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.3}}\n"
+                  "bodies: {b: {method: mpm, material: m, shape: {box: {min: [0, 0, 0], max: [0.2, 0.2, 0.2]}}}}\n"
+                  "boundaries:\n  - {name: floor, mesh: {file: plane.msh, group: slope}, condition: separate}\n"
+                  "loads: {gravity: [0, 0, -10]}\noutput: {every: none, checkpoint: 0 s}\n",
+        cells[] = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 -1 -1 0\n2 3 -1 0\n3 3 3 0\n4 -1 3 0\n"
+                  "$EndNodes\n$Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n$EndElements\n",
+        moves[] = "brunt: 1\ndimension: 2\ntime: {scheme: implicit, step: 0.001, end: 0.004}\n"
+                  "grid: {cell: 0.1, kernel: linear, transfer: flip, cells: {mesh: cells.msh}}\n"
+                  "materials: {m: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.3}}\n"
+                  "bodies: {b: {method: mpm, material: m, shape: {box: {min: [0, 0], max: [0.2, 0.2]}}}}\n"
+                  "loads: {gravity: [0, -10]}\noutput: {every: none, checkpoint: 0 s}\n";
+    small_write(small_path("plane.msh"), plane, sizeof plane - 1);
+    small_write(small_path("falls.yaml"), falls, sizeof falls - 1);
+    small_write(small_path("cells.msh"), cells, sizeof cells - 1);
+    small_write(small_path("moves.yaml"), moves, sizeof moves - 1);
+    shell(0, "$P run falls.yaml -o f -q -t 1 && $P run falls.yaml -o f --resume -q -t 1 --set time.end=0.006");
+    shell(0, "$P run moves.yaml -o m -q -t 1 && $P run moves.yaml -o m --resume -q -t 1 --set time.end=0.006");
+    shell(0, "sed -i 's/^3 0 3 0/3 0.001 3 0/' plane.msh && sed -i 's/^3 3 3 0/3 3.5 3.5 0/' cells.msh");
+    contains(shell(65, "$P run falls.yaml -o f --resume -q -t 1 --set time.end=0.008"), "a mesh file has changed");
+    contains(shell(65, "$P run moves.yaml -o m --resume -q -t 1 --set time.end=0.008"), "a mesh file has changed");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_elements");
     TCase *runs = tcase_create("runs");
@@ -248,6 +278,7 @@ int main(void) {
     tcase_add_test(runs, erosion_in_two_legs_gives_the_same_bits);
     tcase_add_test(runs, check_and_warnings);
     tcase_add_test(runs, mesh_files);
+    tcase_add_test(runs, mesh_files_of_boundaries_and_grid);
     suite_add_tcase(suite, runs);
     return suite_main(suite);
 }
