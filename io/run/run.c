@@ -416,8 +416,10 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
     char path[BRUNT_PATH_LENGTH];
     if (!status) status = path_in(r, "summary.json", path, error);
     if (!status) status = brunt_summary_write(path, &summary, scene, r->world, error);
-    if (!status && scene->output.tractions) status = path_in(r, "tractions.csv", path, error);
-    if (!status && scene->output.tractions) status = brunt_tractions_write(path, r->world, error);
+    // They are of a step, which one that goes on from its end has not taken: what is there stays.
+    const bool tells = scene->output.tractions && brunt_world_steps(r->world) > r->first_step;
+    if (!status && tells) status = path_in(r, "tractions.csv", path, error);
+    if (!status && tells) status = brunt_tractions_write(path, r->world, error);
     if (!status) brunt_console_print(&r->console, "results are in %s (open brunt.pvd in ParaView)\n", r->folder);
     brunt_free(results);
     return status;
