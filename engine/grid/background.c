@@ -91,9 +91,10 @@ static int make_squares(brunt_background *b, brunt_error *error) {
 
 // ------------------------------------------------------------------------------------------ edges
 
-// An edge of a triangle: its ends in ascending order, the node across.
+// An edge of a triangle: its ends in ascending order, the node across, and whether that is to the left of it.
 typedef struct side {
-    int32_t end[2], across;
+    int32_t end[2], across, triangle;
+    bool left;
 } side;
 
 static int compare_sides(const void *a, const void *b) {
@@ -109,14 +110,19 @@ static int find_edges(brunt_background *b, brunt_error *error) {
     if (BRUNT_NEW(sides, count, "edges of a background mesh", error)) return BRUNT_FAILED;
     for (int32_t k = 0; k < count; k++) {
         const int32_t *corner = b->corner[k / 3], p = corner[(k + 1) % 3], q = corner[(k + 2) % 3];
-        sides[k] = (side){{p < q ? p : q, p < q ? q : p}, corner[k % 3]};
+        sides[k] = (side){{p < q ? p : q, p < q ? q : p}, corner[k % 3], k / 3, p < q};
     }
     qsort(sides, (size_t)count, sizeof *sides, compare_sides);
-    const int status = BRUNT_NEW(b->edge, count / 2 + 1, "edges of a background mesh", error);
+    int status = BRUNT_NEW(b->edge, count / 2 + 1, "edges of a background mesh", error);
     for (int32_t k = 0; !status && k + 1 < count; k++)
         if (sides[k].end[0] == sides[k + 1].end[0] && sides[k].end[1] == sides[k + 1].end[1]) {
             const int32_t nodes[4] = {sides[k].end[0], sides[k].end[1], sides[k].across, sides[k + 1].across};
             memcpy(b->edge[b->edge_count++], nodes, sizeof nodes);
+            if (sides[k].left == sides[k + 1].left)
+                status = brunt_fail(error, BRUNT_BAD_INPUT,
+                                    "grid.cells.mesh: elements %d and %d lie on the same side of their edge: they "
+                                    "overlap",
+                                    sides[k].triangle + 1, sides[k + 1].triangle + 1);
         }
     brunt_free(sides);
     return status;
@@ -138,7 +144,7 @@ int brunt_background_make(brunt_background *b, const brunt_mesh *mesh, brunt_err
         const double twice = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         for (int k = 0; k < 3; k++) b->area[b->corner[t][k]] += twice / 6;
     }
-    return make_squares(b, error) || find_edges(b, error) ? BRUNT_FAILED : BRUNT_OK;
+    return make_squares(b, error) ? BRUNT_FAILED : find_edges(b, error);
 }
 
 void brunt_background_free(brunt_background *b) {

@@ -22,7 +22,8 @@ typedef struct brunt_background {
     int32_t squares[2], *first, *listed;
 } brunt_background;
 
-// Of a mesh of BRUNT_TRI3 that brunt_mesh_check has nothing against. BRUNT_OK, or BRUNT_FAILED: out of memory.
+// Of a mesh of BRUNT_TRI3 that brunt_mesh_check has nothing against. BRUNT_OK, BRUNT_BAD_INPUT: triangles that overlap
+// at an edge, or BRUNT_FAILED: out of memory.
 int brunt_background_make(brunt_background *background, const brunt_mesh *mesh, brunt_error *error);
 void brunt_background_free(brunt_background *background);
 // The triangle that a point lies in, of two that share it the one in which it is deeper, else the first; BRUNT_NONE: it

@@ -425,7 +425,7 @@ END_TEST
 START_TEST(refused) {
     static const char *const wanted[] = {
         "grid.cells",      "grid.kernel",     "grid.transfer", "grid.cells.mesh: there is none",
-        "grid.cells.mesh", "grid.cells.mesh", "boundaries"};
+        "grid.cells.mesh", "grid.cells.mesh", "boundaries",    "grid.cells.mesh: elements 1 and 3 lie"};
     brunt_world_def def = flight(_i > 2 ? BRUNT_GRID_MESH : BRUNT_GRID_CUT, BRUNT_PIC);
     brunt_error error;
     if (_i == 0) def.scheme = BRUNT_EXPLICIT, def.step = 0;
@@ -434,6 +434,8 @@ START_TEST(refused) {
     if (_i == 3) brunt_mesh_free(&def.background), def.background = (brunt_mesh){.node_count = 0};
     if (_i == 4) def.background.kind = BRUNT_QUAD4;
     if (_i == 5) def.background.elements[0] = def.background.elements[1];
+    if (_i == 7) memcpy(def.background.elements + 6, def.background.elements, 2 * sizeof(int32_t));
+    if (_i == 7) def.background.elements[8] = def.background.node_count - 1;
     if (_i == 6) def_plane(&def, XYZ(0, -0.5, 0), XYZ(0, 1, 0), BRUNT_SLIP, 0);
     ck_assert_ptr_null(brunt_world_create(&def, &error));
     ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
@@ -457,7 +459,7 @@ int main(void) {
     ADD_LOOP(threads, 4);
     ADD_LOOP(restart, 4);
     ADD_LOOP(outside, 1);
-    ADD_LOOP(refused, 7);
+    ADD_LOOP(refused, 8);
     return suite_main(suite);
 }
 #endif
