@@ -119,6 +119,17 @@ static inline brunt_mesh quarter_disk(int m, int rings) {
     return mesh;
 }
 
+// The greatest component of the forces on its nodes [N].
+static inline double force_scale(const brunt_fem_body *body) {
+    double most = 0;
+    for (int32_t n = 0; n < body->node_count; n++) {
+        real f[3];
+        brunt_fem_internal_force(body, n, f);
+        for (int i = 0; i < 3; i++) most = fmax(most, fabs((double)f[i]));
+    }
+    return most;
+}
+
 // Greatest omega^2 of a free element by differences of its forces, by Rayleigh quotients of a power iteration.
 static inline double true_frequency(brunt_fem_body *body) {
     const int count = 3 * body->node_count;

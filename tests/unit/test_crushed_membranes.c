@@ -25,16 +25,6 @@ static brunt_fem_body crossed(int k, double apart, double coefficient) {
     return body;
 }
 
-static double greatest_force(brunt_fem_body *body) {
-    double most = 0;
-    for (int32_t n = 0; n < body->node_count; n++) {
-        real f[3];
-        brunt_fem_internal_force(body, n, f);
-        for (int i = 0; i < 3; i++) most = fmax(most, fabs((double)f[i]));
-    }
-    return most;
-}
-
 // The nearer the edges come the less it changes.
 START_TEST(forces_stay_as_area_goes) {
     double most = 0;
@@ -43,7 +33,7 @@ START_TEST(forces_stay_as_area_goes) {
         for (int near = 0; near < 2; near++) {
             brunt_fem_body body = crossed(k, near ? 1e-5 : 0.3, 1);
             ck_assert_int_eq(forces(&body, 1e-3).bad, -1);
-            force[near] = greatest_force(&body);
+            force[near] = force_scale(&body);
             brunt_fem_free(&body);
         }
         most = fmax(most, force[1] / force[0]);
@@ -59,7 +49,7 @@ START_TEST(forces_are_the_slope_of_the_energy) {
     for (int k = 0; k < DIRECTIONS; k++) {
         brunt_fem_body body = crossed(k, pow(10, -0.1 * k), k % 3 ? 1 : 0.05);
         brunt_fem_report report = forces(&body, 1e-3);
-        const double scale = greatest_force(&body), h = 1e-6;
+        const double scale = force_scale(&body), h = 1e-6;
         double f[4][3];
         for (int32_t n = 0; n < 4; n++) {
             real g[3];

@@ -26,16 +26,6 @@ static double greatest_membrane_stress(const brunt_fem_body *body) {
     return most;
 }
 
-static double force_scale(const brunt_fem_body *body) {
-    double most = 0;
-    for (int32_t n = 0; n < body->node_count; n++) {
-        real f[3];
-        brunt_fem_internal_force(body, n, f);
-        for (int i = 0; i < 3; i++) most = fmax(most, fabs((double)f[i]));
-    }
-    return most;
-}
-
 // ------------------------------------------------------------------------------------------ geometry
 
 // Area and sum_a X_a (x) b_a of a flat element anywhere in space; faces, each once and oriented like its element.

@@ -393,7 +393,7 @@ START_TEST(threads) {
 }
 END_TEST
 
-START_TEST(restart) { check_restart(swings(_i, 1), swings(_i, 1)); }
+START_TEST(restart) { check_restart(swings(_i, 1), swings(_i, 2)); }
 END_TEST
 
 // ------------------------------------------------------------------------------------------ beyond the mesh
