@@ -124,7 +124,7 @@ some="test_erosion_contact test_point_erosion test_total_lagrangian"
 # Not what does one thing a thousand times, and others do once.
 # shellcheck disable=SC2086
 check "build under the sanitizers" build asan --target brunt_program tests_unit tests_io $some &&
-    run build-asan -L '^(unit|io)$' -LE long -E "$(among "test_numbers test_predict")" && run build-asan -R "$(among "$some")"
+    run build-asan -L '^(unit|io)$' -LE long -E "$(among "test_numbers test_predict test_fluids")" && run build-asan -R "$(among "$some")"
 if command -v clang >/dev/null; then
     check "build with clang" build clang --target brunt_program tests_unit
 fi

@@ -223,9 +223,9 @@ START_TEST(format_and_sums) {
 }
 END_TEST
 
-// A long run, by what it would tell the trace: 30,000 steps of 40 passes, and one of a million.
+// A long run, by what it would tell the trace: 12,000 steps of 40 passes, and one of a million.
 START_TEST(long_runs_are_bounded) {
-    enum { STEPS = 30000, PASSES = 40, MANY = 1000000 };
+    enum { STEPS = 12000, PASSES = 40, MANY = 1000000 };
     small_folder_make();
     brunt_scene scene;
     small_scene(&scene, NULL, 0);
