@@ -3,7 +3,7 @@
 // forces, for short runs in leap-frog.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

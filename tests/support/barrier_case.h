@@ -1,7 +1,7 @@
 // Small contact problems of the barrier for tests: boxes as surfaces, points with nodes of their own or interpolated.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

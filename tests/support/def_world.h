@@ -1,7 +1,7 @@
 // Worlds built from definitions, through the public interface alone: what the tests of the physics have in common.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // Meshes of boxes and single elements, bodies made of them, and their steps, for the tests of finite elements.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // What a test measures of a hard case, for the page of all of them (hard_cases.md, made by hard_cases.py).
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>

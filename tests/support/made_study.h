@@ -1,7 +1,7 @@
 // Studies made by hand: as if all runs had been made, with the results that a test gives them.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // One material point that is stretched along its axes: parameters by key, the work of its stress, the ledger.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>

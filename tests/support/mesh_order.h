@@ -1,7 +1,7 @@
 // How well a mesh of a shape has its measure, at two lengths of edges.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <math.h>
 
 // `error`: share of the measure that is missing, at an edge and at half of it. Straight shapes are met exactly; of

@@ -2,7 +2,7 @@
 // is written about one.
 #pragma once
 
-#include <check.h>
+#include "tests/support/suite.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,6 +4,10 @@
 #include <check.h>
 #include <stdlib.h>
 
+// Check's process writes down where each assertion holds, a call of the system each time: a loop of a million takes
+// seconds, and most of a suite's time. A test that crashes is told by its name and where it begins.
+#define _mark_point(file, line) ((void)0)
+
 // Runs a suite; the exit code of its program: 1 when a test failed, or CK_RUN_CASE names none of it. That single
 // precision has nothing of a suite is no failure.
 static inline int suite_main(Suite *suite) {
