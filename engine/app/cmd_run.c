@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "app/app.h"
+#include "base/parallel.h"
 #include "io/run/run.h"
 
 // A signal handler can reach nothing but what is static; it sets a flag, the run loop does the rest.
@@ -45,6 +46,7 @@ int cmd_run(int argc, char **argv) {
                   true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
     if (arguments.threads != 1) start_with_short_spins(argv);
+    brunt_parallel_adapt(true);
     // A run of hours must not end because the reader of its output has gone, nor without a word because a file may not
     // grow.
     signal(SIGPIPE, SIG_IGN);

@@ -2,6 +2,8 @@
 
 #include <omp.h>
 
+#include "base/gain.h"
+
 enum { LEAST_PIECES = 4 };
 
 int brunt_threads_available(void) { return omp_get_num_procs(); }
@@ -25,28 +27,61 @@ typedef struct phase {
     void *context;
 } phase;
 
-static void run(int threads, const phase *p, brunt_timer *timer) {
+static bool adapts;                    // see brunt_parallel_adapt
+static _Thread_local brunt_gain gains; // of what this thread starts
+
+void brunt_parallel_adapt(bool on) { adapts = on; }
+
+static void run_alone(const phase *p, span *spans) {
+    spans[0].begin = brunt_clock();
+    p->task(p->context, 0, p->count, 0);
+    spans[0].end = brunt_clock();
+}
+
+// Returns how many threads there were, which may be fewer than asked for.
+static int run_together(int threads, const phase *p, bool timed, span *spans) {
     const int64_t pieces = (p->count + p->grain - 1) / p->grain;
-    int workers = 1; // may be fewer than asked for
-    span spans[BRUNT_THREAD_LIMIT];
-    if (threads <= 1) {
-        if (timer) spans[0].begin = brunt_clock();
-        p->task(p->context, 0, p->count, 0);
-        if (timer) spans[0].end = brunt_clock();
-    } else {
+    int workers = 1;
 #pragma omp parallel num_threads(threads)
-        {
-            int worker = omp_get_thread_num();
-            if (worker == 0) workers = omp_get_num_threads();
-            if (timer) spans[worker].begin = brunt_clock();
+    {
+        int worker = omp_get_thread_num();
+        if (worker == 0) workers = omp_get_num_threads();
+        if (timed) spans[worker].begin = brunt_clock();
 #pragma omp for schedule(dynamic, 1) nowait
-            for (int64_t piece = 0; piece < pieces; piece++) {
-                int64_t begin = piece * p->grain, end = begin + p->grain < p->count ? begin + p->grain : p->count;
-                p->task(p->context, begin, end, worker);
-            }
-            if (timer) spans[worker].end = brunt_clock();
+        for (int64_t piece = 0; piece < pieces; piece++) {
+            int64_t begin = piece * p->grain, end = begin + p->grain < p->count ? begin + p->grain : p->count;
+            p->task(p->context, begin, end, worker);
         }
+        if (timed) spans[worker].end = brunt_clock();
     }
+    return workers;
+}
+
+// On one thread or on all, as has been the quicker way.
+static int run_adapted(int threads, const phase *p, span *spans) {
+    const brunt_gain_choice choice = brunt_gain_choose(&gains, p->task, p->count);
+    int workers = 1;
+    const double begin = brunt_clock();
+    if (choice.together)
+        workers = run_together(threads, p, true, spans);
+    else
+        run_alone(p, spans);
+    const double end = brunt_clock();
+    double work = 0;
+    for (int w = 0; w < workers; w++) work += spans[w].end - spans[w].begin;
+    brunt_gain_learn(&gains, &choice, p->task, p->count, work, end - begin, end);
+    return workers;
+}
+
+static void run(int threads, const phase *p, brunt_timer *timer) {
+    int workers = 1;
+    span spans[BRUNT_THREAD_LIMIT];
+    if (threads > 1)
+        workers = adapts ? run_adapted(threads, p, spans) : run_together(threads, p, timer != NULL, spans);
+    else if (timer)
+        run_alone(p, spans);
+    else
+        p->task(p->context, 0, p->count, 0);
     if (timer) account_times(timer, spans, workers);
 }
 

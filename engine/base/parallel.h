@@ -25,5 +25,9 @@ void brunt_parallel_each(int threads, int64_t count, brunt_task_fn *task, void *
 
 int brunt_threads_available(void);
 
+// Whether threads are left out of phases that take no shorter with them, as measured (base/gain.h): of all that is run
+// from now on, by whichever thread. Off at first: what is asked for is what is used.
+void brunt_parallel_adapt(bool on);
+
 // Monotonic time [s].
 double brunt_clock(void);

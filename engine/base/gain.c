@@ -1,0 +1,57 @@
+#include "base/gain.h"
+
+#include <math.h>
+
+enum { WINDOW_PHASES = 32, FIRST_SHARED = 4 };
+static const double WINDOW = 5e-3, WHOLE_WINDOW = 50e-3; // [s] of so many phases at least; of how many ever
+static const double PAUSE = 100;                         // over what the last window took
+
+// Open addressing: where a task is, or is to be; -1 when the table is full.
+static int32_t place_of(const brunt_gain *gain, brunt_task_fn *task) {
+    const uint64_t hash = (uint64_t)(uintptr_t)task * 0x9e3779b97f4a7c15u >> 32;
+    for (int32_t k = 0; k < BRUNT_GAIN_TASKS; k++) {
+        const int32_t at = (int32_t)((hash + (uint64_t)k) % BRUNT_GAIN_TASKS);
+        if (!gain->tasks[at].task || gain->tasks[at].task == task) return at;
+    }
+    return -1;
+}
+
+brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task, int64_t count) {
+    const int32_t at = place_of(gain, task);
+    brunt_gain_choice choice = {true, at, -1, at < 0 ? 0 : gain->tasks[at].cost * (double)count};
+    if (!(choice.expected > 0)) return choice;
+    const int size = choice.expected < 1e-6 ? 0 : ilogb(choice.expected * 1e6);
+    choice.size = size < BRUNT_GAIN_SIZES ? size : BRUNT_GAIN_SIZES - 1;
+    const brunt_gain_size *s = &gain->sizes[choice.size];
+    choice.together = s->known ? s->together : choice.size >= FIRST_SHARED;
+    return choice;
+}
+
+// After a window of phases run one way: that way's rate, and how the next are run.
+static void decide(brunt_gain_size *s, double now) {
+    s->rate[s->together] = s->taken / s->expected;
+    if (s->trial) {
+        s->together = s->rate[1] < s->rate[0];
+        s->next = now + PAUSE * s->taken;
+        s->trial = false;
+    } else if (now >= s->next) {
+        s->together = !s->together;
+        s->trial = true;
+    }
+    s->phases = 0, s->expected = 0, s->taken = 0;
+}
+
+void brunt_gain_learn(brunt_gain *gain, const brunt_gain_choice *choice, brunt_task_fn *task, int64_t count,
+                      double work, double taken, double now) {
+    if (choice->task < 0) return;
+    double *cost = &gain->tasks[choice->task].cost;
+    gain->tasks[choice->task].task = task;
+    const double measured = work / (double)count;
+    // A thread that the machine left out has worked no longer than others, it only looks so.
+    *cost += *cost > 0 ? (fmin(measured, 2 * *cost) - *cost) / 8 : measured;
+    if (choice->size < 0) return;
+    brunt_gain_size *s = &gain->sizes[choice->size];
+    if (!s->known) s->together = choice->together, s->known = true;
+    s->phases++, s->expected += choice->expected, s->taken += taken;
+    if (s->taken >= WHOLE_WINDOW || (s->phases >= WINDOW_PHASES && s->taken >= WINDOW)) decide(s, now);
+}

@@ -1,0 +1,43 @@
+// Whether threads pay: what phases take on one thread and on all is measured while a run goes on, by the work that is
+// in them, and the quicker way is taken, and asked again from time to time. Sharing a small phase costs more than the
+// phase; on a machine with other work any phase waits for whichever of its threads was left out. No result depends on
+// it.
+#pragma once
+
+#include <stdint.h>
+
+#include "base/parallel.h"
+
+enum { BRUNT_GAIN_TASKS = 512, BRUNT_GAIN_SIZES = 16 };
+
+// Phases of about the same work, sizes a factor of two apart from a microsecond on.
+typedef struct brunt_gain_size {
+    bool together, known;   // how they are run now; that this is not the guess that all begins with
+    bool trial;             // that this is the way not chosen
+    int32_t phases;         // since that was last decided
+    double expected, taken; // [s] work in them, and wall clock
+    double rate[2];         // taken over expected: on one thread, together
+    double next;            // [s] when the other way is tried again
+} brunt_gain_size;
+
+// Zeroed at first.
+typedef struct brunt_gain {
+    struct {
+        brunt_task_fn *task;
+        double cost; // [s] of work a unit; 0: not known
+    } tasks[BRUNT_GAIN_TASKS];
+    brunt_gain_size sizes[BRUNT_GAIN_SIZES];
+} brunt_gain;
+
+typedef struct brunt_gain_choice {
+    bool together;
+    int32_t task, size; // where what is learnt of it goes; -1: nowhere
+    double expected;    // [s] work; 0: not known
+} brunt_gain_choice;
+
+brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task, int64_t count);
+
+// A phase that was run as chosen, and ended at `now`: `work` is the sum over its threads, `taken` from its begin to its
+// end [s].
+void brunt_gain_learn(brunt_gain *gain, const brunt_gain_choice *choice, brunt_task_fn *task, int64_t count,
+                      double work, double taken, double now);

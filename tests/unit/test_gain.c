@@ -1,0 +1,174 @@
+// Labels:
+// Whether threads pay (base/gain.h), on machines that are made up: no clock is read but where phases are really run.
+#include "tests/support/suite.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/gain.h"
+
+// What a phase takes on a machine [s]: work on one thread, and together; a thread more costs `wake` whenever it is
+// asked.
+typedef struct machine {
+    double alone, together; // times the work
+    double wake;            // [s]
+} machine;
+
+static const machine quiet = {1, 1 / 1.9, 8e-6}, busy = {4, 11, 4e-3}, loses = {1, 1.2, 0}, alike = {1, 1, 0};
+
+static double phase_time(const machine *m, bool together, double work) {
+    return together ? m->together * work + m->wake : m->alone * work;
+}
+
+static void task(void *context, int64_t begin, int64_t end, int worker) {
+    (void)context, (void)begin, (void)end, (void)worker;
+}
+
+typedef struct stay {
+    double now, taken, best, worst; // [s]
+    int64_t phases, together;
+} stay;
+
+// Phases of one size on a machine, for so many seconds.
+static void stay_on(brunt_gain *gain, const machine *m, double work, double seconds, stay *at) {
+    const double end = at->now + seconds;
+    while (at->now < end) {
+        const brunt_gain_choice choice = brunt_gain_choose(gain, task, 100);
+        const double alone = phase_time(m, false, work), shared = phase_time(m, true, work),
+                     taken = choice.together ? shared : alone;
+        at->now += taken, at->taken += taken, at->best += fmin(alone, shared), at->worst += fmax(alone, shared);
+        at->phases++, at->together += choice.together;
+        brunt_gain_learn(gain, &choice, task, 100, work, taken, at->now);
+    }
+}
+
+static const double sizes[] = {0.5e-6, 2e-6, 9e-6, 20e-6, 70e-6, 300e-6, 2e-3, 11e-3, 60e-3};
+enum { SIZES = sizeof sizes / sizeof *sizes };
+
+// To a few per cent the time of the quicker way, on machines that do not change.
+START_TEST(the_quicker_way_is_found) {
+    static const machine *const machines[] = {&quiet, &busy, &loses, &alike};
+    for (int m = 0; m < 4; m++)
+        for (int k = 0; k < SIZES; k++) {
+            brunt_gain gain = {0};
+            stay begin = {0}, at = {0};
+            stay_on(&gain, machines[m], sizes[k], 10, &begin);
+            at.now = begin.now;
+            stay_on(&gain, machines[m], sizes[k], 100, &at);
+            printf("  %d %.1e s: %.3f of the quicker way (%.3f at first), %.3f of the slower\n", m, sizes[k],
+                   at.taken / at.best, begin.taken / begin.best, at.taken / at.worst);
+            ck_assert_double_le(at.taken, 1.03 * at.best);
+            ck_assert_double_le(begin.taken, 1.25 * begin.best);
+        }
+}
+END_TEST
+
+// A machine that others begin to use, and leave again: it is noticed in both directions.
+START_TEST(machines_change) {
+    static const double some[] = {70e-6, 2e-3};
+    for (int k = 0; k < 2; k++) {
+        brunt_gain gain = {0};
+        stay at = {0};
+        for (int turn = 0; turn < 6; turn++) {
+            stay one = {.now = at.now};
+            stay_on(&gain, turn % 2 ? &busy : &quiet, some[k], 20, &one);
+            at.now = one.now;
+            printf("  %.0e s, %s: %.3f of the quicker way\n", some[k], turn % 2 ? "busy" : "quiet",
+                   one.taken / one.best);
+            ck_assert_double_le(one.taken, 1.12 * one.best);
+        }
+    }
+}
+END_TEST
+
+// One phase in thirty waits ten milliseconds for a thread that was left out: the mean counts, not most.
+START_TEST(rare_waits_count) {
+    brunt_gain gain = {0};
+    int64_t together = 0, phases = 0;
+    double now = 0;
+    for (; now < 60; phases++) {
+        const brunt_gain_choice choice = brunt_gain_choose(&gain, task, 10);
+        const double taken = choice.together ? 60e-6 + (phases % 30 == 0 ? 10e-3 : 0) : 100e-6;
+        now += taken, together += choice.together;
+        brunt_gain_learn(&gain, &choice, task, 10, 100e-6, taken, now);
+    }
+    ck_assert_double_lt((double)together, 0.02 * (double)phases);
+}
+END_TEST
+
+// A thread that the machine left out for a second has not done a second's work: what a unit costs is known still.
+START_TEST(costs_survive_a_pause) {
+    brunt_gain gain = {0};
+    for (int k = 0; k < 200; k++) {
+        const brunt_gain_choice choice = brunt_gain_choose(&gain, task, 1000);
+        if (k > 20) ck_assert_double_lt(fabs(choice.expected / 50e-6 - 1), k > 100 && k < 140 ? 0.2 : 0.01);
+        brunt_gain_learn(&gain, &choice, task, 1000, k == 100 ? 1 : 50e-6, 30e-6, 1e-4 * k);
+    }
+    // And what has become dearer is known soon.
+    for (int k = 0; k < 100; k++) {
+        const brunt_gain_choice choice = brunt_gain_choose(&gain, task, 1000);
+        brunt_gain_learn(&gain, &choice, task, 1000, 500e-6, 300e-6, 1);
+    }
+    ck_assert_double_lt(fabs(brunt_gain_choose(&gain, task, 1000).expected / 500e-6 - 1), 0.01);
+}
+END_TEST
+
+// Twice as much of the same is known beforehand; tasks do not know of one another; more tasks than there is room for
+// are run as asked.
+START_TEST(tasks_are_told_apart) {
+    static brunt_gain gain;
+    for (int k = 1; k <= BRUNT_GAIN_TASKS + 50; k++) {
+        brunt_task_fn *one = (brunt_task_fn *)(uintptr_t)(16 * k);
+        const brunt_gain_choice choice = brunt_gain_choose(&gain, one, 10);
+        ck_assert(choice.together && !(choice.expected > 0));
+        ck_assert_int_eq(choice.task<0, k> BRUNT_GAIN_TASKS);
+        brunt_gain_learn(&gain, &choice, one, 10, 1e-6 * k, 1e-6 * k, 1);
+    }
+    for (int k = 1; k <= BRUNT_GAIN_TASKS; k++) {
+        const double expected = brunt_gain_choose(&gain, (brunt_task_fn *)(uintptr_t)(16 * k), 20).expected;
+        ck_assert_double_lt(fabs(expected - 2e-6 * k), 1e-12);
+    }
+}
+END_TEST
+
+static void mark(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    int32_t *marks = context;
+    for (int64_t i = begin; i < end; i++) {
+        volatile double x = 1; // some work
+        for (int k = 0; k < 20; k++) x = x * 1.0000001;
+        marks[i] += x > 0;
+    }
+}
+
+// Phases that are really run, as the choice changes: each unit once.
+START_TEST(each_unit_is_run_once) {
+    enum { UNITS = 5000, PHASES = 4000 };
+    static int32_t marks[UNITS];
+    brunt_timer timer = {0};
+    brunt_parallel_adapt(true);
+    for (int k = 0; k < PHASES; k++) brunt_parallel(2, UNITS >> k % 8, 16, mark, marks, k % 2 ? &timer : NULL);
+    brunt_parallel_adapt(false);
+    for (int i = 0; i < UNITS; i++) {
+        int runs = 0;
+        for (int k = 0; k < 8; k++) runs += i < UNITS >> k;
+        ck_assert_int_eq(marks[i], PHASES / 8 * runs);
+    }
+    ck_assert_double_gt(timer.seconds[0] + timer.seconds[1], 0);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("gain");
+    TCase *tests = tcase_create("gain");
+    tcase_set_timeout(tests, 0);
+    tcase_add_test(tests, the_quicker_way_is_found);
+    tcase_add_test(tests, machines_change);
+    tcase_add_test(tests, rare_waits_count);
+    tcase_add_test(tests, costs_survive_a_pause);
+    tcase_add_test(tests, tasks_are_told_apart);
+    tcase_add_test(tests, each_unit_is_run_once);
+    suite_add_tcase(suite, tests);
+    return suite_main(suite);
+}
