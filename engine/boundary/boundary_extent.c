@@ -101,8 +101,9 @@ typedef struct search {
     const brunt_boundary_surface *s;
     double *gap;
     int dim;
-    point_box box;    // of the point that looks, its place as the surface was at the start
-    double coming[3]; // [m] how far it goes within the step, as the surface sees it
+    const brunt_boundary_turned *turned; // NULL: it does not turn
+    point_box box;    // of the point that looks, its place as the surface was at the start, if that does not turn
+    double coming[3]; // [m] how far it goes within the step, as the surface sees it, if that does not turn
     struct sides *sides;
 } search;
 
@@ -127,10 +128,16 @@ static void take_side(const search *l, int32_t b, double enter, double leave) {
     if (leave < -lost && leave > -lost - (1 + MARGIN) * spacing) *mark |= DEEP;
 }
 
+// How far the point goes within the step, as boundary particle b sees it [m].
+static void take_coming(const search *l, int32_t b, double coming[3]) {
+    for (int a = 0; a < 3; a++) coming[a] = l->coming[a] - (l->turned ? l->turned->goes[b][a] : 0);
+}
+
 static void look_at(search *l, int32_t b) {
-    const brunt_boundary_particle *p = &l->s->particle[b];
-    double d[3], enter, leave, towards = 0;
-    for (int a = 0; a < l->dim; a++) d[a] = p->x[a] - l->box.x[a], towards -= l->coming[a] * p->normal[a];
+    const brunt_boundary_particle *p = brunt_boundary_surface_particle(l->s, b);
+    double d[3], coming[3], enter, leave, towards = 0;
+    take_coming(l, b, coming);
+    for (int a = 0; a < l->dim; a++) d[a] = p->x[a] - l->box.x[a], towards -= coming[a] * p->normal[a];
     if (l->s->def.condition != BRUNT_SEPARATE) {
         if (inside(l->dim, &l->box, d)) l->gap[b] = 0;
         return;
@@ -164,20 +171,34 @@ static void look_in_cell(search *l, const int32_t at[3]) {
     for (int32_t k = l->s->cell_first[cell]; k < l->s->cell_first[cell + 1]; k++) look_at(l, l->s->cell_particle[k]);
 }
 
-// The boundary particles in the box that the point goes over within the step.
+// The box that the point goes over within the step, around what may hold it.
+static void take_range(const search *l, double low[3], double high[3]) {
+    for (int a = 0; a < l->dim; a++) {
+        const double extent = l->box.extent[a] * (1 + 2 * MARGIN) +
+                              (l->s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0) +
+                              (l->sides ? 4 * l->box.half : 0);
+        low[a] = l->box.x[a] - extent + fmin(0, l->coming[a]);
+        high[a] = l->box.x[a] + extent + fmax(0, l->coming[a]);
+    }
+    if (!l->turned) return;
+    double middle[3] = {0}, square = 0, back[3];
+    for (int a = 0; a < l->dim; a++)
+        middle[a] = 0.5 * (low[a] + high[a]), square += 0.25 * (high[a] - low[a]) * (high[a] - low[a]);
+    brunt_boundary_surface_back(l->s, middle, back);
+    const double range = sqrt(square) + 1.5 * l->turned->farthest; // particles are half of their way on
+    for (int a = 0; a < l->dim; a++) low[a] = back[a] - range, high[a] = back[a] + range;
+}
+
+// The boundary particles in that box.
 static void look_around(search *l) {
     const brunt_boundary_surface *s = l->s;
     int32_t from[3] = {0}, to[3] = {0};
-    double cells = 1;
+    double cells = 1, low[3], high[3];
+    take_range(l, low, high);
     for (int a = 0; a < l->dim; a++) {
-        const double extent = l->box.extent[a] * (1 + 2 * MARGIN) +
-                              (s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0) +
-                              (l->sides ? 4 * l->box.half : 0);
-        const double low = l->box.x[a] - extent + fmin(0, l->coming[a]),
-                     high = l->box.x[a] + extent + fmax(0, l->coming[a]);
-        if (!(low <= s->high[a] && high >= s->low[a])) return;
-        from[a] = (int32_t)floor((fmax(low, s->low[a]) - s->low[a]) / s->cell);
-        to[a] = (int32_t)floor((fmin(high, s->high[a]) - s->low[a]) / s->cell);
+        if (!(low[a] <= s->high[a] && high[a] >= s->low[a])) return;
+        from[a] = (int32_t)floor((fmax(low[a], s->low[a]) - s->low[a]) / s->cell);
+        to[a] = (int32_t)floor((fmin(high[a], s->high[a]) - s->low[a]) / s->cell);
         cells *= to[a] - from[a] + 1;
     }
     if (cells > s->particle_count) {
@@ -191,16 +212,17 @@ static void look_around(search *l) {
 
 // Whether the middle of the point's box goes through the surface at b, and ends deeper behind it than it is pushed out.
 static bool passes(const search *l, int32_t b) {
-    const brunt_boundary_particle *p = &l->s->particle[b];
+    const brunt_boundary_particle *p = brunt_boundary_surface_particle(l->s, b);
     const double deep = (1 + 2 * BEHIND) * l->box.half, beside = l->s->cell / l->s->def.particles;
-    double from = 0, towards = 0, square = 0;
+    double from = 0, towards = 0, square = 0, coming[3];
+    take_coming(l, b, coming);
     for (int a = 0; a < l->dim; a++) {
         from += (l->box.x[a] - p->x[a]) * p->normal[a];
-        towards += l->coming[a] * p->normal[a];
+        towards += coming[a] * p->normal[a];
     }
     if (!(from > 0) || !(from + towards < -deep)) return false;
     for (int a = 0; a < l->dim; a++) {
-        const double off = l->box.x[a] - p->x[a] - from / towards * l->coming[a];
+        const double off = l->box.x[a] - p->x[a] - from / towards * coming[a];
         square += off * off;
     }
     return square < beside * beside;
@@ -210,15 +232,18 @@ static bool passes(const search *l, int32_t b) {
 static bool goes_far(const search *l) {
     double square = 0;
     for (int a = 0; a < l->dim; a++) square += l->coming[a] * l->coming[a];
+    if (l->turned) square = pow(sqrt(square) + l->turned->farthest, 2);
     return square > 4 * BEHIND * BEHIND * l->box.half * l->box.half;
 }
 
 // The particles that the middle of its box may go through.
 static bool passes_any(const search *l) {
     const brunt_boundary_surface *s = l->s;
+    const double *low = l->turned ? l->turned->low : s->low, *high = l->turned ? l->turned->high : s->high,
+                 beside = s->cell + (l->turned ? l->turned->farthest : 0);
     for (int a = 0; a < l->dim; a++)
-        if (!(fmin(l->box.x[a], l->box.x[a] + l->coming[a]) <= s->high[a] + s->cell &&
-              fmax(l->box.x[a], l->box.x[a] + l->coming[a]) >= s->low[a] - s->cell))
+        if (!(fmin(l->box.x[a], l->box.x[a] + l->coming[a]) <= high[a] + beside &&
+              fmax(l->box.x[a], l->box.x[a] + l->coming[a]) >= low[a] - beside))
             return false;
     for (int32_t b = 0; b < s->particle_count; b++)
         if (passes(l, b)) return true;
@@ -227,7 +252,7 @@ static bool passes_any(const search *l) {
 
 bool brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *body,
                                    const brunt_boundary_extent *extent, double *gap) {
-    search l = {.s = s, .gap = gap, .dim = body->particles.dim};
+    search l = {.s = s, .gap = gap, .dim = body->particles.dim, .turned = s->turned.particle ? &s->turned : NULL};
     bool passed = false;
     real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
     const bool leaves = s->def.condition == BRUNT_SEPARATE;
@@ -279,9 +304,9 @@ void brunt_boundary_surface_backs(brunt_boundary_surface *s) {
 
 // On which sides of a surface a body is when the run begins.
 static void find_sides(const brunt_boundary_surface *s, brunt_body *body, const double *frame, sides *found) {
-    double way[3];
-    brunt_boundary_surface_way(s, 0, way);
-    search l = {.s = s, .dim = body->particles.dim, .sides = found};
+    double way[3] = {0};
+    search l = {.s = s, .dim = body->particles.dim, .sides = found, .turned = s->turned.particle ? &s->turned : NULL};
+    if (!l.turned) brunt_boundary_surface_way(s, 0, way);
     for (int32_t b = 0; b < body->grid.block_count; b++)
         for (int64_t n = 0; n < body->grid.blocks[b].count; n++) {
             l.box = box_of(body, body->grid.blocks[b].first + n, frame);
@@ -299,7 +324,7 @@ static int check_sides(const brunt_boundary_surface *s, const brunt_body *body, 
                           body->particles.dim == 2 ? "to the left of the line: turn the order of its points"
                                                    : "as the corners of its facets go round: mesh.reversed turns it");
     for (int32_t b = 0; b < s->particle_count && !may_pass; b++) {
-        const double *x = s->particle[b].x;
+        const double *x = brunt_boundary_surface_particle(s, b)->x;
         if (found->mark[b] == (IN_FRONT | BEHIND_IT | DEEP))
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               "boundaries (%s): it goes through body '%s' near (%.4g, %.4g, %.4g) m: what is behind it "

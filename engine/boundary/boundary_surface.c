@@ -71,16 +71,26 @@ static int find_body(brunt_boundary_surface *s, const brunt_bodies *bodies, brun
                       s->boundary->name, s->def.body);
 }
 
+// Load steps without a table go in proportion to the pseudo-time.
+static int take_table(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_world_def *world,
+                      brunt_error *error) {
+    static const double ramp[][2] = {{0, 0}, {1, 1}};
+    const brunt_curve grows = {.points = (double(*)[2])ramp, .count = BRUNT_COUNT(ramp)};
+    const bool ramped = world->scheme == BRUNT_STATIC && def->displacement && !def->table.count;
+    return brunt_curve_copy(&s->def.table, ramped ? &grows : &def->table, error);
+}
+
 static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_world_def *world,
                         const brunt_bodies *bodies, brunt_error *error) {
     s->def = *def;
     s->def.point = NULL, s->def.facet = NULL;
-    if (brunt_curve_copy(&s->def.table, &def->table, error)) return BRUNT_FAILED;
+    BRUNT_TRY(take_table(s, def, world, error));
     int status = find_body(s, bodies, error);
     if (!status) status = (world->dimension == 2 ? brunt_boundary_cut_line : brunt_boundary_cut_facets)(s, def, error);
     if (!status) status = sort_particles(s, error);
     if (status) return status;
     brunt_boundary_surface_backs(s);
+    BRUNT_TRY(brunt_boundary_turned_make(s, error));
     s->bodies = bodies->mpm_count;
     s->boundary->surface = s;
     if (!brunt_scheme_minimises(world->scheme)) BRUNT_TRY(brunt_boundary_surface_points(s, def, world, error));
@@ -120,6 +130,7 @@ void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces) {
     for (int k = 0; k < surfaces->count; k++) {
         brunt_boundary_surface *s = &surfaces->surface[k];
         brunt_free(s->def.table.points), brunt_free(s->particle), brunt_free(s->first);
+        brunt_boundary_turned_free(&s->turned);
         brunt_free(s->key), brunt_free(s->cell_first), brunt_free(s->cell_particle), brunt_free(s->traction);
         brunt_facets_free(&s->facets), brunt_free(s->rate), brunt_free(s->touching);
     }
@@ -133,6 +144,7 @@ size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces) {
         const brunt_boundary_surface *s = &surfaces->surface[k];
         bytes += brunt_facets_bytes(&s->facets) + s->touching_capacity;
         bytes += s->rate ? (size_t)s->pieces * sizeof *s->rate : 0;
+        bytes += s->turned.particle ? (size_t)s->particle_count * (sizeof *s->particle + sizeof *s->turned.goes) : 0;
         bytes += (size_t)s->particle_count * (sizeof *s->particle + sizeof *s->key + 2 * sizeof(int32_t)) +
                  (size_t)s->pieces * (size_t)s->bodies * 3 * sizeof *s->traction;
     }

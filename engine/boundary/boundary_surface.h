@@ -20,6 +20,16 @@ typedef struct brunt_boundary_particle {
     int32_t piece;
 } brunt_boundary_particle;
 
+// How a surface that turns does so over an implicit step.
+typedef struct brunt_boundary_turned {
+    brunt_placement now, then;         // at its start and its end
+    double angle;                      // [rad] between
+    double D[9], e[3];                 // a place x that goes with it goes by D x + e [m]
+    brunt_boundary_particle *particle; // where and along what it asks (boundary_turn.c); NULL: it does not turn
+    double (*goes)[3];                 // [m] their ways
+    double low[3], high[3], farthest;  // [m] box around them, the longest of their ways
+} brunt_boundary_turned;
+
 // A material point that a surface meets in an explicit step.
 typedef struct brunt_touching {
     int32_t constraint, particle; // of the set of the body; the boundary particle that is nearest
@@ -38,6 +48,7 @@ typedef struct brunt_boundary_surface {
     // directions. They last.
     double *traction;
     int32_t bodies;
+    brunt_boundary_turned turned;
     // Of the last step.
     int32_t active; // pieces that hold something
     double drift;   // [m/s] greatest rate, as mean of a piece, at which what is held leaves its place
@@ -77,10 +88,29 @@ brunt_placement brunt_boundary_surface_place(const brunt_boundary_surface *surfa
 int32_t brunt_boundary_surface_cell(const brunt_boundary_surface *surface, const int32_t at[3]);
 // Whether it holds a body of material points.
 bool brunt_boundary_surface_acts(const brunt_boundary_surface *surface, const brunt_body *body);
+// A boundary particle as it is in the step: of what turns another one.
+const brunt_boundary_particle *brunt_boundary_surface_particle(const brunt_boundary_surface *surface, int32_t b);
 // What lasts from step to step.
 int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces);
 double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out);
 const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in);
+
+// --- boundary_turn.c: implicit steps of a surface that turns
+// Room for it, and how it is at the start of the run; nothing for what does not turn. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+int brunt_boundary_turned_make(brunt_boundary_surface *surface, brunt_error *error);
+void brunt_boundary_turned_free(brunt_boundary_turned *turned);
+// As it goes within a step.
+void brunt_boundary_surface_turn(brunt_boundary_surface *surface, double time, double dt);
+// Whether by more than a quarter of a turn, which its particles' ways do not tell.
+bool brunt_boundary_surface_turns_far(const brunt_boundary_surface *surface);
+// The way of a place that goes with it [m]; where a place is on the surface as it was given.
+void brunt_boundary_surface_goes(const brunt_boundary_surface *surface, const double x[3], double way[3]);
+void brunt_boundary_surface_back(const brunt_boundary_surface *surface, const double x[3], double out[3]);
+// What was kept of a piece's traction as it is where the step begins, and back from where it ends [Pa]; of what does
+// not turn the same.
+void brunt_boundary_surface_bring(const brunt_boundary_surface *surface, const double kept[3], double traction[3]);
+void brunt_boundary_surface_keep(const brunt_boundary_surface *surface, const double traction[3], double kept[3]);
 
 // --- surface_points.c: explicit steps
 // The facets of a surface that has all else, and how fast it is at most. BRUNT_OK, or BRUNT_FAILED: out of memory.
@@ -99,7 +129,8 @@ void brunt_boundary_surface_met(const brunt_contact_context *m, brunt_boundary *
                                 const brunt_constraint_set *set);
 
 // --- boundary_extent.c
-// When a body is looked at: how far the surface has gone, and how far it goes over the step [m], which takes dt [s].
+// When a body is looked at: how far the surface has gone, and how far it goes over the step [m], which takes dt [s]; of
+// what turns 0, that is in `turned`.
 typedef struct brunt_boundary_extent {
     double way[3], step[3], dt;
     const double *frame; // of the body

@@ -91,6 +91,8 @@ static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_e
                         {".rotation.about", turn->about, 3 * turned, BRUNT_ANY_NUMBER});
     if (turned && !(hypot(hypot(turn->axis[0], turn->axis[1]), turn->axis[2]) > 0))
         REFUSE("%s.rotation.axis: the axis has zero length", owner);
+    if (turned && def->dimension == 2 && (turn->axis[0] != 0 || turn->axis[1] != 0))
+        REFUSE("%s.rotation.axis: in two dimensions what turns does so about z", owner);
     if (turned && !surface->displacement &&
         (surface->value[0] != 0 || surface->value[1] != 0 || surface->value[2] != 0))
         REFUSE("%s.rotation: it goes with a displacement, since the table is the factor of both", owner);
@@ -108,10 +110,6 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     if (((const brunt_boundary_surface_def *)one)->mass > 0) {
         *key = ".mass";
         return BRUNT_EXPLICIT_ONLY ": in implicit and load steps the motion of a line or mesh is prescribed";
-    }
-    if (((const brunt_boundary_surface_def *)one)->rotation.angle != 0) {
-        *key = ".rotation";
-        return BRUNT_EXPLICIT_ONLY ": in implicit and load steps a line or mesh moves without turning";
     }
     if (brunt_solver_iterates(def->newton.solver))
         return def->newton.solver == BRUNT_SOLVER_PCG

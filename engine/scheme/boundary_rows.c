@@ -63,21 +63,37 @@ static double stiffness(const brunt_boundary_rows *rows, int body) {
     return STIFF * (double)material->density * (c * c / h + inertia);
 }
 
-// How the surface moves along the rows, at a boundary particle that is `gap` from the body.
-static void add_motion(brunt_boundary_patch *p, const brunt_boundary_particle *b, const brunt_boundary_extent *extent,
-                       double share, double gap) {
+// How the surface moves along the rows, by `step`, at a boundary particle that is `gap` from the body.
+static void add_motion(brunt_boundary_patch *p, const brunt_boundary_particle *b, const double step[3], double share,
+                       double gap) {
     for (int k = 0; k < p->rows; k++) {
         double direction[3], along = 0;
         brunt_boundary_surface_direction(p->surface, b, k, direction);
-        for (int a = 0; a < 3; a++) along += extent->step[a] * direction[a];
+        for (int a = 0; a < 3; a++) along += step[a] * direction[a];
         p->prescribed[k] += share * along;
         p->goal[k] += share * (along - (p->leaves && k == 0 ? gap : 0));
     }
 }
 
+// What sticks to a surface that turns goes as its nodes would with that.
+static void turn_nodes(const brunt_boundary_rows *rows, brunt_boundary_patch *p) {
+    const int dim = rows->unknowns->dim;
+    memset(p->prescribed, 0, sizeof p->prescribed);
+    for (int64_t e = rows->first[rows->patch_count]; e < rows->first[rows->patch_count + 1]; e++) {
+        double x[3] = {0}, way[3];
+        for (int a = 0; a < dim; a++) x[a] = rows->unknowns->position[rows->node[e] * (int64_t)dim + a];
+        brunt_boundary_surface_goes(p->surface, x, way);
+        for (int k = 0; k < p->rows; k++)
+            for (int a = 0; a < dim; a++) p->prescribed[k] += rows->weight[e][3 * k + a] * way[a];
+    }
+    memcpy(p->goal, p->prescribed, sizeof p->goal);
+}
+
 static void close_patch(brunt_boundary_rows *rows, brunt_boundary_patch *p) {
     const brunt_boundary_surface *s = p->surface;
-    const double *kept = s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece);
+    double kept[3];
+    brunt_boundary_surface_bring(s, s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece), kept);
+    if (s->turned.particle && s->def.condition == BRUNT_STICK) turn_nodes(rows, p);
     for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->before[k] = kept[k];
     // In load steps what rubs sticks until it is known what presses: there is nothing else that could hold it.
     p->bound = !p->rubs ? 0 : rows->still ? INFINITY : s->def.friction * fmax(0, -kept[0]);
@@ -103,10 +119,11 @@ static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32
     p->leaves = s->def.condition == BRUNT_SEPARATE, p->rubs = p->leaves && p->rows > 1;
     rows->first[count + 1] = rows->first[count];
     for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) {
+        const brunt_boundary_particle *particle = brunt_boundary_surface_particle(s, b);
         double share;
         if (rows->here[b] == INFINITY) continue;
-        if (add_particle(rows, p, &s->particle[b], extent->way, &share, error)) return BRUNT_FAILED;
-        add_motion(p, &s->particle[b], extent, share, rows->here[b]);
+        if (add_particle(rows, p, particle, extent->way, &share, error)) return BRUNT_FAILED;
+        add_motion(p, particle, s->turned.particle ? s->turned.goes[b] : extent->step, share, rows->here[b]);
         if (!(share > 0)) rows->unseen = s;
     }
     close_patch(rows, p);
@@ -174,17 +191,31 @@ static int reserve_gaps(brunt_boundary_rows *rows, brunt_error *error) {
     return BRUNT_CAPACITY(rows->gap, count, 0, "particles of boundaries", error);
 }
 
+// How the surface goes within the step.
+static void take_way(brunt_boundary_surface *s, double now, double dt, brunt_boundary_extent *extent) {
+    double end[3];
+    if (s->turned.particle) {
+        brunt_boundary_surface_turn(s, now, dt);
+        return;
+    }
+    brunt_boundary_surface_way(s, now, extent->way);
+    brunt_boundary_surface_way(s, now + dt, end);
+    for (int a = 0; a < 3; a++) extent->step[a] = end[a] - extent->way[a];
+}
+
 static int go_round(brunt_boundary_rows *rows, const build *b, brunt_error *error) {
-    const double now = b->world->clock.time, then = now + rows->dt;
+    const double now = b->world->clock.time;
     rows->here = rows->gap, rows->reached = 0, rows->passed = NULL;
     if (b->adds) rows->patch_count = 0, rows->version++, rows->unseen = NULL, rows->first[0] = 0;
     for (int k = 0; k < rows->surfaces->count; k++) {
         brunt_boundary_surface *s = &rows->surfaces->surface[k];
         brunt_boundary_extent extent = {.dt = rows->dt};
-        double end[3];
-        brunt_boundary_surface_way(s, now, extent.way);
-        brunt_boundary_surface_way(s, then, end);
-        for (int a = 0; a < 3; a++) extent.step[a] = end[a] - extent.way[a];
+        take_way(s, now, rows->dt, &extent);
+        if (brunt_boundary_surface_turns_far(s))
+            return brunt_fail(error, BRUNT_FAILED,
+                              "boundary '%s' turns by %.3g rad within a step, a quarter of a turn is the most: shorter "
+                              "ones are wanted",
+                              s->boundary->name, s->turned.angle);
         rows->cell = s->cell;
         if (add_surface(rows, s, &extent, b, error)) return BRUNT_FAILED;
     }

@@ -65,6 +65,8 @@ int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brun
                              bool *grown, brunt_error *error);
 // Sum of the sizes of all forces at u [N].
 double brunt_boundary_rows_forces(const brunt_boundary_rows *rows, const double *u);
+// What it would take to go the way of the step against b alone [N]: rounding leaves some roundings of that.
+double brunt_boundary_rows_effort(const brunt_boundary_rows *rows);
 // Once u is a minimum: multipliers and bounds of friction as they are there. Whether that changed them.
 bool brunt_boundary_rows_settle(brunt_boundary_rows *rows, const double *u);
 // t at u [Pa], C u - prescribed [m^3], of a patch.

@@ -174,6 +174,13 @@ double brunt_boundary_rows_forces(const brunt_boundary_rows *r, const double *u)
     return sum;
 }
 
+double brunt_boundary_rows_effort(const brunt_boundary_rows *r) {
+    double sum = 0;
+    for (int32_t p = 0; p < r->patch_count; p++)
+        for (int k = 0; k < r->patch[p].rows; k++) sum += r->patch[p].stiffness * fabs(r->patch[p].prescribed[k]);
+    return sum;
+}
+
 // ------------------------------------------------------------------------------------------ multipliers
 
 // The multiplier of rows that the matrix has, as it is to be where C u is `moved`; the greatest change over b h. What

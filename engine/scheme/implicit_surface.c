@@ -55,11 +55,13 @@ static void account_impulses(const struct brunt_implicit *m, int32_t patch, cons
     for (int a = 0; a < 3; a++) last->impulse[a] += part.impulse[a], last->angular[a] += part.angular[a];
 }
 
-// The greatest rate at which a row's material leaves what holds it; in load steps, of the pseudo-time.
+// The greatest rate at which a row's material leaves what holds it; in load steps, of the pseudo-time. Of what turns
+// the mean rate of the step: velocities at its end have turned on.
 static double rate_of(const struct brunt_implicit *m, int32_t patch) {
     const brunt_boundary_patch *p = &m->rows.patch[patch];
     const int dim = m->unknowns.dim;
-    const double *v = m->still ? m->field.u : m->field.v, each = m->still ? 1 / m->dt : 1;
+    const bool mean = m->still || p->surface->turned.particle;
+    const double *v = mean ? m->field.u : m->field.v, each = mean ? 1 / m->dt : 1;
     double most = 0;
     for (int row = 0; row < (p->leaves ? 0 : p->rows); row++) {
         double rate = -p->prescribed[row] / m->dt;
@@ -113,7 +115,7 @@ void brunt_implicit_surfaces_keep(brunt_world *world) {
         brunt_boundary_surface *s = p->surface;
         double t[3], moved[3];
         brunt_boundary_patch_traction(&m->rows, patch, m->field.u, t, moved);
-        memcpy(s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece), t, sizeof t);
+        brunt_boundary_surface_keep(s, t, s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece));
     }
 }
 

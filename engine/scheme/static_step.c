@@ -53,7 +53,7 @@ static void take_stiffness(const brunt_world *world, struct brunt_implicit *m) {
 }
 
 // Forces within bodies as the step begins, which loads and reactions balance; loads at its end; and what rounding
-// makes: places are known to some roundings of their size.
+// makes: places are known to some roundings of their size, ways of surfaces to some of theirs.
 static void take_scale(struct brunt_implicit *m) {
     enum { ROUNDINGS = 10 };
     const int64_t all = brunt_implicit_components(m);
@@ -65,6 +65,7 @@ static void take_scale(struct brunt_implicit *m) {
         within += fabs(m->field.step[k]), loads += fabs(m->field.load[k]);
         rounding += m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
     }
+    if (m->holds) rounding += brunt_boundary_rows_effort(&m->rows);
     m->scale = (brunt_load_scale){.least = fmax(within, loads), .rounding = ROUNDINGS * DBL_EPSILON * rounding};
 }
 

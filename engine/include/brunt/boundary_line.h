@@ -13,7 +13,7 @@ extern "C" {
 // A line (two dimensions) or a surface (three) that lies anywhere in the grid of material points, and holds what of
 // them it reaches. In implicit steps its conditions hold as means over pieces, whose tractions are unknowns of the
 // step; in explicit ones for each material point that touches it, and the tractions of pieces are what that has taken.
-// It may move as a whole, and in explicit steps turn.
+// It may move as a whole, and turn.
 typedef struct brunt_boundary_surface_def {
     char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "surface1", ...
     char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all that are of material points
@@ -26,7 +26,7 @@ typedef struct brunt_boundary_surface_def {
     double friction;           // [-] >= 0, Coulomb, of separate; default 0
     bool displacement;         // whether `value` is a displacement since the start [m], else a velocity [m/s]
     double value[3];           // times the table; default 0
-    brunt_rotation_def rotation; // explicit steps: how it turns beside its displacement, times the table; default 0
+    brunt_rotation_def rotation; // how it turns beside its displacement, times the table; default 0
     brunt_curve table;           // over time [s]; default 1 always; owned by the definition
     double piece;                // cells > 0, about: length of a piece, of a surface the edge of one; default 1.5
     int32_t particles;           // > 0, a cell's length: boundary particles, by which a piece sees the grid; default 4
