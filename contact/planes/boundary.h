@@ -19,7 +19,8 @@ struct brunt_boundary {
     brunt_region_def where;                 // of a region; shares the world's definition
     const brunt_group_def *group;           // of a group, NULL for the others
     brunt_boundary_def given;               // of a kind that lists its keys; shares the world's definition
-    struct brunt_boundary_surface *surface; // of a line or mesh
+    struct brunt_boundary_surface *surface; // of a line or mesh, of a plane that is in pieces
+    bool in_pieces;                         // implicit steps: a plane that holds material points as those do
     int body;                               // the one it acts on, -1: all, or that of its group
     int symmetry_plane;                     // index of the symmetry plane it has become, -1
     brunt_impulse_account account;          // since the start

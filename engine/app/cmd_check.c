@@ -121,8 +121,10 @@ static void print_surfaces(const brunt_scene *scene, const brunt_world *world) {
     for (int32_t s = 0; s < count; s++) {
         brunt_boundary_surface_report report;
         brunt_boundary_surface_read(world, s, &report);
+        const double piece = s < scene->world.surface_count ? scene->world.surfaces[s].piece
+                                                            : brunt_boundary_surface_def_default().piece;
         printf("  %-20s %12d pieces of about %g cells, %lld boundary particles\n", report.name, (int)report.pieces,
-               scene->world.surfaces[s].piece, (long long)brunt_boundary_surface_size(world, s));
+               piece, (long long)brunt_boundary_surface_size(world, s));
     }
 }
 

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "boundary/boundary_pieces.h"
 #include "boundary/curve.h"
+#include "boundary/kinds.h"
 #include "grid/grid.h"
 
 // ------------------------------------------------------------------------------------------ cells
@@ -80,6 +81,16 @@ static int take_table(brunt_boundary_surface *s, const brunt_boundary_surface_de
     return brunt_curve_copy(&s->def.table, ramped ? &grows : &def->table, error);
 }
 
+// What all of them have, once they are cut.
+static int close_surface(brunt_boundary_surface *s, const brunt_bodies *bodies, brunt_error *error) {
+    BRUNT_TRY(sort_particles(s, error));
+    brunt_boundary_surface_backs(s);
+    BRUNT_TRY(brunt_boundary_turned_make(s, error));
+    s->bodies = bodies->mpm_count;
+    s->boundary->surface = s;
+    return BRUNT_NEW(s->traction, (size_t)s->bodies * (size_t)s->pieces * 3 + 1, "tractions of a boundary", error);
+}
+
 static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_world_def *world,
                         const brunt_bodies *bodies, brunt_error *error) {
     s->def = *def;
@@ -87,14 +98,9 @@ static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_
     BRUNT_TRY(take_table(s, def, world, error));
     int status = find_body(s, bodies, error);
     if (!status) status = (world->dimension == 2 ? brunt_boundary_cut_line : brunt_boundary_cut_facets)(s, def, error);
-    if (!status) status = sort_particles(s, error);
+    if (!status) status = close_surface(s, bodies, error);
     if (status) return status;
-    brunt_boundary_surface_backs(s);
-    BRUNT_TRY(brunt_boundary_turned_make(s, error));
-    s->bodies = bodies->mpm_count;
-    s->boundary->surface = s;
-    if (!brunt_scheme_minimises(world->scheme)) BRUNT_TRY(brunt_boundary_surface_points(s, def, world, error));
-    return BRUNT_NEW(s->traction, (size_t)s->bodies * (size_t)s->pieces * 3 + 1, "tractions of a boundary", error);
+    return brunt_scheme_minimises(world->scheme) ? BRUNT_OK : brunt_boundary_surface_points(s, def, world, error);
 }
 
 static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def *def, const brunt_bodies *bodies,
@@ -111,16 +117,23 @@ static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def 
 
 int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
                                  const brunt_bodies *bodies, brunt_boundary *boundaries, brunt_error *error) {
-    if (!def->surface_count) return BRUNT_OK;
-    if (BRUNT_NEW(surfaces->surface, def->surface_count, "boundaries of lines and surfaces", error) ||
+    brunt_boundary *planes = boundaries + brunt_boundary_first(def, "plane");
+    int count = def->surface_count;
+    for (int w = 0; w < def->plane_count; w++) count += planes[w].in_pieces;
+    if (!count) return BRUNT_OK;
+    if (BRUNT_NEW(surfaces->surface, count, "boundaries of lines and surfaces", error) ||
         find_frames(surfaces, def, bodies, error))
         return BRUNT_FAILED;
-    surfaces->count = def->surface_count;
-    for (int k = 0; k < surfaces->count; k++) {
+    surfaces->count = count;
+    for (int k = 0, w = 0; k < count; k++) {
         brunt_boundary_surface *s = &surfaces->surface[k];
-        s->boundary = &boundaries[k];
+        const bool is_plane = k >= def->surface_count;
+        while (is_plane && !planes[w].in_pieces) w++;
+        s->boundary = is_plane ? &planes[w++] : &boundaries[brunt_boundary_first(def, "surface") + k];
         s->cell = def->cell;
-        const int status = make_surface(s, &def->surfaces[k], def, bodies, error);
+        int status = is_plane ? brunt_boundary_window_make(s, bodies, def->dimension, error)
+                              : make_surface(s, &def->surfaces[k], def, bodies, error);
+        if (!status && is_plane) status = close_surface(s, bodies, error);
         if (status) return status;
     }
     return BRUNT_OK;
@@ -168,6 +181,7 @@ void brunt_boundary_surface_way(const brunt_boundary_surface *s, double time, do
     const double share =
         s->def.displacement ? brunt_curve_at(&s->def.table, time) : brunt_curve_integral(&s->def.table, time);
     for (int a = 0; a < 3; a++) way[a] = share * s->def.value[a];
+    brunt_boundary_window_way(s, way);
 }
 
 bool brunt_boundary_surface_acts(const brunt_boundary_surface *s, const brunt_body *body) {
@@ -206,9 +220,9 @@ void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, c
 
 // ------------------------------------------------------------------------------------------ state
 
-// Tractions, a free tool, and what was reported of the last step.
+// Tractions, a free tool, where the pieces of a plane are, and what was reported of the last step.
 static int64_t state_of(const brunt_boundary_surface *s) {
-    return (int64_t)s->bodies * s->pieces * 3 + (s->tool.free ? BRUNT_TOOL_STATE : 0) + 2;
+    return (int64_t)s->bodies * s->pieces * 3 + (s->tool.free ? BRUNT_TOOL_STATE : 0) + (s->window.each ? 2 : 0) + 2;
 }
 
 int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces) {
@@ -224,6 +238,7 @@ double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surface
         memcpy(out, s->traction, tractions * sizeof *out);
         out += tractions;
         if (s->tool.free) out = brunt_tool_state_get(&s->tool, out);
+        for (int d = 0; s->window.each && d < 2; d++) *out++ = s->window.at[d];
         *out++ = s->active, *out++ = s->drift;
     }
     return out;
@@ -237,6 +252,7 @@ const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surface
         in += tractions;
         if (s->tool.free) in = brunt_tool_state_set(&s->tool, in);
         if (s->tool.free) brunt_boundary_surface_hurry(s);
+        for (int d = 0; s->window.each && d < 2; d++) s->window.at[d] = *in++;
         s->active = (int32_t)*in++, s->drift = *in++;
     }
     return in;

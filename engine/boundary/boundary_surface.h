@@ -30,6 +30,15 @@ typedef struct brunt_boundary_turned {
     double low[3], high[3], farthest;  // [m] box around them, the longest of their ways
 } brunt_boundary_turned;
 
+// Of a plane that holds material points by pieces: those that there are.
+typedef struct brunt_boundary_window {
+    double piece;     // [m] edge of a piece
+    int each;         // boundary particles along it; 0: it is no plane
+    int32_t count[2]; // pieces along the tangents
+    double at[2];     // the first of them, counted from the plane's point. They last
+    double tangent[2][3];
+} brunt_boundary_window;
+
 // A material point that a surface meets in an explicit step.
 typedef struct brunt_touching {
     int32_t constraint, particle; // of the set of the body; the boundary particle that is nearest
@@ -49,6 +58,7 @@ typedef struct brunt_boundary_surface {
     double *traction;
     int32_t bodies;
     brunt_boundary_turned turned;
+    brunt_boundary_window window;
     // Of the last step.
     int32_t active; // pieces that hold something
     double drift;   // [m/s] greatest rate, as mean of a piece, at which what is held leaves its place
@@ -69,7 +79,8 @@ typedef struct brunt_boundary_surfaces {
     double (*frame)[9]; // of each body of material points: how its particles' own boxes were turned at the start
 } brunt_boundary_surfaces;
 
-// After the bodies are made. `boundaries`: those of the surfaces. BRUNT_OK, or what is wrong.
+// After the bodies are made; `boundaries`: all of them. Planes that hold by pieces follow the surfaces. BRUNT_OK, or
+// what is wrong.
 int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
                                  const brunt_bodies *bodies, brunt_boundary *boundaries, brunt_error *error);
 void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces);
@@ -94,6 +105,18 @@ const brunt_boundary_particle *brunt_boundary_surface_particle(const brunt_bound
 int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces);
 double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out);
 const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in);
+
+// --- boundary_window.c: planes
+// Definition, pieces and particles of a surface that has nothing but its boundary, a plane, and the cell. BRUNT_OK, or
+// what is wrong.
+int brunt_boundary_window_make(brunt_boundary_surface *surface, const brunt_bodies *bodies, int dim,
+                               brunt_error *error);
+// Before a step: the pieces there are go along with the bodies; nothing of what is no plane. BRUNT_OK, or BRUNT_FAILED:
+// they have spread too far, or out of memory.
+int brunt_boundary_window_follow(brunt_boundary_surface *surface, const brunt_bodies *bodies, int dim,
+                                 brunt_error *error);
+// Adds how far the pieces have gone on along the plane [m].
+void brunt_boundary_window_way(const brunt_boundary_surface *surface, double way[3]);
 
 // --- boundary_turn.c: implicit steps of a surface that turns
 // Room for it, and how it is at the start of the run; nothing for what does not turn. BRUNT_OK, or BRUNT_FAILED: out of

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -46,6 +47,15 @@ static bool oblique(const brunt_plane_def *plane) {
     return along > 1;
 }
 
+// Whether there is a body of elements that it acts on.
+static bool acts_on_meshes(const brunt_world_def *def, const brunt_plane_def *plane) {
+    bool any = false;
+    for (int32_t i = 0; i < def->body_count; i++)
+        any = any ||
+              (def->bodies[i].method != BRUNT_MPM && (!plane->body[0] || !strcmp(plane->body, def->bodies[i].name)));
+    return any;
+}
+
 static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
     if (!brunt_scheme_minimises(def->scheme)) return NULL;
     const brunt_plane_def *plane = one;
@@ -54,9 +64,12 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     if (def->scheme == BRUNT_STATIC && plane->friction > 0 && !brunt_friction_in_load_steps(def))
         return BRUNT_FRICTION_NOT_STATIC;
     *key = ".condition";
-    return !row->pushes && !row->sticks && oblique(plane)
-               ? "implicit steps hold nodes on planes that are normal to an axis"
-               : NULL;
+    if (row->pushes || row->sticks || !oblique(plane)) return NULL;
+    if (brunt_solver_iterates(def->newton.solver))
+        return "newton.solver: implicit steps hold material points on such a plane by tractions, for which conjugate "
+               "gradients have no factor: direct or auto";
+    return acts_on_meshes(def, plane) ? "implicit steps hold nodes of meshes on planes that are normal to an axis"
+                                      : NULL;
 }
 
 // ------------------------------------------------------------------------------------------ making
@@ -113,6 +126,9 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
             (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .boundary = index};
         return BRUNT_OK;
     }
+    // On a line of the grid nodes hold; elsewhere those behind it would, as much as a cell away.
+    boundary->in_pieces =
+        brunt_scheme_minimises(def->scheme) && !row->pushes && !on_line && !brunt_solver_iterates(def->newton.solver);
     if (row->of_fluids && brunt_boundary_has_fluid(def))
         brunt_warn(m->messages, "boundaries[%d] (%s): %s", index, boundary->name, row->of_fluids);
     all->meets_points = all->meets_points || row->pushes;

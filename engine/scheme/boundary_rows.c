@@ -210,6 +210,8 @@ static int go_round(brunt_boundary_rows *rows, const build *b, brunt_error *erro
     for (int k = 0; k < rows->surfaces->count; k++) {
         brunt_boundary_surface *s = &rows->surfaces->surface[k];
         brunt_boundary_extent extent = {.dt = rows->dt};
+        if (b->adds && b->looks && brunt_boundary_window_follow(s, rows->bodies, rows->unknowns->dim, error))
+            return BRUNT_FAILED;
         take_way(s, now, rows->dt, &extent);
         if (brunt_boundary_surface_turns_far(s))
             return brunt_fail(error, BRUNT_FAILED,

@@ -67,7 +67,7 @@ static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, doubl
         for (int32_t n = 0; n < bodies->fem[k].node_count; n++)
             hold_node(u, world, w, u->base[k] + n, ON_PLANE * bodies->fem[k].mean_edge, dt);
     brunt_bodies_points(bodies, boundary->body, &i, &end);
-    for (; i < end; i++) {
+    for (; i < end && !boundary->in_pieces; i++) {
         const brunt_grid *grid = &bodies->mpm[i].grid;
         const double tolerance = ON_PLANE * (double)grid->h;
         for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {

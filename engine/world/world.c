@@ -201,7 +201,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
                                       error);
     if (!status)
         status = brunt_boundary_surfaces_make(&world->boundaries.surfaces, def, &world->bodies,
-                                              world->boundaries.boundary + brunt_boundary_first(def, "surface"), error);
+                                              world->boundaries.boundary, error);
     if (!status)
         status = brunt_boundary_lists_make(&world->boundaries.acting, world->boundaries.boundary,
                                            world->boundaries.boundary_count, world->bodies.count, error);

@@ -191,7 +191,7 @@ static const scene_key own_rows[] = {
     {"boundaries[].plane", SCENE_GROUP, NULL, OPTIONAL, NONE, "a wall; of it and the other kinds exactly one is wanted"},
     {"boundaries[].plane.point", SCENE_VECTOR, "m", REQUIRED, NONE, "a point of it"},
     {"boundaries[].plane.normal", SCENE_VECTOR, "1", REQUIRED, NONE, "pointing to the side the bodies are on"},
-    {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, CONDITION_WORDS, 0, false, "of a plane, a line or a mesh; symmetry: of a plane along the axes, for mpm on a grid line; slip of a line or mesh: in both directions, material does not leave it", .only = SCENE_AT_PLANE | SCENE_AT_LINE},
+    {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, CONDITION_WORDS, 0, false, "of a plane, a line or a mesh; symmetry: of a plane along the axes, for mpm on a grid line; slip of a line or mesh: in both directions, material does not leave it. In implicit and load steps planes of condition stick or slip hold mpm as lines do, but on a line of the grid, where its nodes hold", .only = SCENE_AT_PLANE | SCENE_AT_LINE},
     {"boundaries[].friction", SCENE_REAL, "1", "0", 0, INFINITY, false, true, NULL, 0, true, "Coulomb coefficient, with condition: separate", .only = SCENE_AT_PLANE | SCENE_AT_LINE},
     {"boundaries[].region", SCENE_SHAPE, NULL, OPTIONAL, NONE, "grid nodes in there are given a velocity; it acts on bodies of method mpm"},
     {"boundaries[].place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the region, as for bodies", .only = SCENE_AT_REGION},
