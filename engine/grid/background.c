@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "grid/grid.h"
 
 // Of a triangle's height: points that rounding puts outside of all triangles are in them yet.
 static const double ROUNDING_SHARE = 1e-9;
@@ -104,6 +105,15 @@ static int compare_sides(const void *a, const void *b) {
     return (p->across > q->across) - (p->across < q->across);
 }
 
+// Edges by the blocks of the nodes that they begin at.
+static int list_edges(brunt_background *b, brunt_error *error) {
+    const int32_t blocks = (b->node_count + BRUNT_BLOCK_NODES - 1) / BRUNT_BLOCK_NODES;
+    if (BRUNT_NEW(b->edge_first, blocks + 1, "edges of a background mesh", error)) return BRUNT_FAILED;
+    for (int32_t e = 0; e < b->edge_count; e++) b->edge_first[b->edge[e][0] / BRUNT_BLOCK_NODES + 1]++;
+    for (int32_t k = 0; k < blocks; k++) b->edge_first[k + 1] += b->edge_first[k];
+    return BRUNT_OK;
+}
+
 static int find_edges(brunt_background *b, brunt_error *error) {
     const int32_t count = 3 * b->triangle_count;
     side *sides;
@@ -125,7 +135,7 @@ static int find_edges(brunt_background *b, brunt_error *error) {
                                     sides[k].triangle + 1, sides[k + 1].triangle + 1);
         }
     brunt_free(sides);
-    return status;
+    return status ? status : list_edges(b, error);
 }
 
 // ------------------------------------------------------------------------------------------ the whole
@@ -148,7 +158,7 @@ int brunt_background_make(brunt_background *b, const brunt_mesh *mesh, brunt_err
 }
 
 void brunt_background_free(brunt_background *b) {
-    void *const all[] = {b->node, b->corner, b->area, b->edge, b->first, b->listed};
+    void *const all[] = {b->node, b->corner, b->area, b->edge, b->edge_first, b->first, b->listed};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *b = (brunt_background){.node_count = 0};
 }

@@ -15,7 +15,8 @@ typedef struct brunt_background {
     double (*node)[2];    // [m]
     int32_t (*corner)[3]; // of each triangle, counter-clockwise
     double *area;         // [m^2] of each node: a third of the triangles about it
-    int32_t (*edge)[4];   // between two triangles: its ends, and the nodes across it
+    int32_t (*edge)[4];   // between two triangles: its ends, and the nodes across it; ascending by its first end
+    int32_t *edge_first;  // of each block of nodes: the first edge that begins there; then all
     int32_t edge_count;
     // Squares that all triangles are listed in whose bounds reach them, in ascending order.
     double low[2], square;

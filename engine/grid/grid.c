@@ -32,7 +32,7 @@ void brunt_grid_free(brunt_grid *grid) {
         grid->blocks,         grid->block_key,        grid->bin_start, grid->slots,           grid->slot_key,
         grid->nodes,          grid->p2g_buffer,       grid->spare_key, grid->block_table.key, grid->block_table.value,
         grid->slot_table.key, grid->slot_table.value, grid->held,      grid->corner,          grid->source_first,
-        grid->source};
+        grid->source,         grid->reached};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *grid = (brunt_grid){0};
 }
@@ -41,7 +41,7 @@ size_t brunt_grid_bytes(const brunt_grid *grid) {
     return grid->blocks_capacity + grid->block_key_capacity + grid->bin_start_capacity + grid->slots_capacity +
            grid->slot_key_capacity + grid->nodes_capacity + grid->p2g_buffer_capacity + grid->spare_key_capacity +
            grid->held_capacity + grid->corner_capacity + grid->source_first_capacity + grid->source_capacity +
-           12 * (size_t)(grid->block_table.capacity + grid->slot_table.capacity);
+           grid->reached_capacity + 12 * (size_t)(grid->block_table.capacity + grid->slot_table.capacity);
 }
 
 // ------------------------------------------------------------------------------------------ keys and tables
@@ -159,19 +159,18 @@ static void triangles_of(const brunt_grid *grid, int32_t b, int32_t range[2]) {
 // The slots of their corners.
 static int find_mesh_slots(brunt_grid *grid, brunt_error *error) {
     const int32_t all = (grid->mesh->node_count + BRUNT_BLOCK_NODES - 1) / BRUNT_BLOCK_NODES;
-    uint8_t *mark;
     if (BRUNT_CAPACITY(grid->slot_key, (size_t)all + 1, 0, "blocks of grid nodes", error) ||
-        BRUNT_NEW(mark, all + 1, "marks of blocks of grid nodes", error))
+        BRUNT_CAPACITY(grid->reached, (size_t)all + 1, 0, "marks of blocks of grid nodes", error))
         return BRUNT_FAILED;
+    memset(grid->reached, 0, (size_t)all);
     for (int32_t b = 0; b < grid->block_count; b++) {
         int32_t t[2];
         for (triangles_of(grid, b, t); t[0] < t[1]; t[0]++)
-            for (int k = 0; k < 3; k++) mark[grid->mesh->corner[t[0]][k] / BRUNT_BLOCK_NODES] = 1;
+            for (int k = 0; k < 3; k++) grid->reached[grid->mesh->corner[t[0]][k] / BRUNT_BLOCK_NODES] = 1;
     }
     grid->slot_count = 0;
     for (int32_t s = 0; s < all; s++)
-        if (mark[s]) grid->slot_key[grid->slot_count++] = brunt_key((const int32_t[3]){s, 0, 0});
-    brunt_free(mark);
+        if (grid->reached[s]) grid->slot_key[grid->slot_count++] = brunt_key((const int32_t[3]){s, 0, 0});
     return BRUNT_OK;
 }
 

@@ -90,7 +90,8 @@ typedef struct brunt_grid {
     int32_t
         *corner; // of each block, three a bin: the node's number (slot * BRUNT_BLOCK_NODES + place), -1: no triangle
     int32_t *source_first, *source; // of each node: where it stands in `corner`, ascending
-    size_t corner_capacity, source_first_capacity, source_capacity;
+    uint8_t *reached;               // of each block of the mesh's nodes: whether blocks of triangles reach it
+    size_t corner_capacity, source_first_capacity, source_capacity, reached_capacity;
 } brunt_grid;
 
 void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const double origin[3]);

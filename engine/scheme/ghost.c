@@ -74,14 +74,24 @@ static void find_shares(const brunt_background *mesh, const int32_t edge[4], dou
     share[0] = -1 - share[1] - share[2], share[3] = 1;
 }
 
+// Whether body i, or one that it is tied to, has nodes of a block of a mesh.
+static bool has_block(const brunt_unknowns *u, const brunt_bodies *bodies, int i, int32_t block) {
+    for (int other = u->tie[i]; other < bodies->mpm_count; other++)
+        if (u->tie[other] == u->tie[i] && bodies->mpm[other].grid.reached[block]) return true;
+    return false;
+}
+
 static int add_edges(brunt_ghost *g, const brunt_bodies *bodies, int i, double stiffness, brunt_error *error) {
     const brunt_background *mesh = bodies->mpm[i].grid.mesh;
-    for (int32_t e = 0; e < mesh->edge_count; e++) {
-        int32_t node[4];
-        double share[4];
-        if (!find_edge(g->unknowns, bodies, i, mesh->edge[e], node)) continue;
-        find_shares(mesh, mesh->edge[e], share);
-        if (add_run(g, node, share, 4, stiffness, error)) return BRUNT_FAILED;
+    for (int32_t block = 0; block * BRUNT_BLOCK_NODES < mesh->node_count; block++) {
+        if (!has_block(g->unknowns, bodies, i, block)) continue;
+        for (int32_t e = mesh->edge_first[block]; e < mesh->edge_first[block + 1]; e++) {
+            int32_t node[4];
+            double share[4];
+            if (!find_edge(g->unknowns, bodies, i, mesh->edge[e], node)) continue;
+            find_shares(mesh, mesh->edge[e], share);
+            if (add_run(g, node, share, 4, stiffness, error)) return BRUNT_FAILED;
+        }
     }
     return BRUNT_OK;
 }

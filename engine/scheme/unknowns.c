@@ -91,7 +91,8 @@ void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
                          u->holder,      u->target,
                          u->end,         u->images.leader,
                          u->images.sign, u->images.follower,
-                         u->images.mass, u->images.boundary};
+                         u->images.mass, u->images.boundary,
+                         u->sloped};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *u = (brunt_unknowns){.dim = u->dim};
 }
@@ -100,7 +101,7 @@ size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies)
     size_t bytes = u->mass_capacity + u->position_capacity + u->velocity_capacity + u->held_capacity +
                    u->holder_capacity + u->target_capacity + u->end_capacity + u->images.leader_capacity +
                    u->images.follower_capacity + u->images.sign_capacity + u->images.mass_capacity +
-                   u->images.boundary_capacity;
+                   u->images.boundary_capacity + u->sloped_capacity;
     for (int i = 0; i < bodies->mpm_count; i++) bytes += u->number_capacity[i];
     return bytes;
 }
@@ -127,19 +128,18 @@ static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i, bru
     if (BRUNT_CAPACITY_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0, "numbers of grid nodes", error))
         return BRUNT_FAILED;
     double most = 0;
-    uint8_t *sloped = NULL;
-    if (grid->order == BRUNT_LINEAR && BRUNT_NEW(sloped, nodes + 1, "marks of grid nodes", error)) return BRUNT_FAILED;
-    if (sloped) brunt_body_mark_reached(&bodies->mpm[i], sloped);
+    const bool linear = grid->order == BRUNT_LINEAR;
+    if (linear && BRUNT_CAPACITY(u->sloped, (size_t)nodes + 1, 0, "marks of grid nodes", error)) return BRUNT_FAILED;
+    if (linear) memset(u->sloped, 0, (size_t)nodes), brunt_body_mark_reached(&bodies->mpm[i], u->sloped);
     for (int64_t k = 0; k < nodes; k++) most = fmax(most, (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS]);
     int64_t next = u->count;
     for (int64_t k = 0; k < nodes; k++) {
-        const bool weighs =
-            (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > LEAST_SHARE * most || (sloped && sloped[k]);
+        const bool weighs = (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > LEAST_SHARE * most ||
+                            (linear && u->sloped[k]);
         u->number[i][k] = weighs ? shared_number(u, bodies, i, k) : -1;
         if (weighs && u->number[i][k] < 0) u->number[i][k] = (int32_t)next++;
         if (next > INT32_MAX / 3) break;
     }
-    brunt_free(sloped);
     u->count = (int32_t)next;
     if (next <= INT32_MAX / 3) return BRUNT_OK;
     return brunt_fail(error, BRUNT_FAILED, "there are more than %d nodes with unknowns", INT32_MAX / 3);

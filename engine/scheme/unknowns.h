@@ -30,6 +30,8 @@ typedef struct brunt_unknowns {
     size_t *number_capacity;
     int32_t *tie; // of each body of points: the first one that it is tied to, itself else; ties of ties hold too
     brunt_images images;
+    uint8_t *sloped; // of the nodes of a grid of linear functions: whether a point has a slope there
+    size_t sloped_capacity;
     double *mass; // [kg]
     size_t mass_capacity;
     double *position, *velocity; // [m], [m/s] at the start of the step

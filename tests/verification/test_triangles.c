@@ -108,6 +108,12 @@ START_TEST(found) {
     for (int32_t n = 0; n < background.node_count; n++) area += background.area[n];
     ck_assert_double_eq_tol(area, width * height, 1e-12);
     ck_assert_int_eq(background.edge_count, 3 * 31 * 12 - 31 - 12);
+    const int32_t blocks = (background.node_count + 63) / 64;
+    ck_assert_int_eq(background.edge_first[0], 0);
+    ck_assert_int_eq(background.edge_first[blocks], background.edge_count);
+    for (int32_t b = 0; b < blocks; b++)
+        for (int32_t e = background.edge_first[b]; e < background.edge_first[b + 1]; e++)
+            ck_assert_int_eq(background.edge[e][0] / 64, b);
     brunt_mesh_free(&mesh), brunt_background_free(&background);
 }
 END_TEST
@@ -172,6 +178,20 @@ static double uneven(const brunt_world *world, double c, double s, double mean) 
 
 static const int kernels[4] = {BRUNT_QUADRATIC, BRUNT_LINEAR, BRUNT_GRID_CUT, BRUNT_GRID_MESH};
 static const char *const words[4] = {"splines", "quads", "cells cut in two", "mesh"};
+
+// A body at rest has all that it needs after some steps, on each grid.
+START_TEST(needs_no_more) {
+    brunt_world_def def = bar(kernels[_i], 0, 4);
+    def.gravity[0] = 0;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 6);
+    const int64_t before = brunt_memory_calls();
+    world_steps(world, 4);
+    printf("  %s: %g allocations a step\n", words[_i], (double)(brunt_memory_calls() - before) / 4);
+    ck_assert_int_eq(brunt_memory_calls(), before);
+    brunt_world_destroy(world);
+}
+END_TEST
 
 // On every grid, as it is and turned by 30 degrees.
 START_TEST(hangs) {
@@ -448,6 +468,7 @@ int main(void) {
     Suite *suite = suite_create("triangles");
     ADD_LOOP(weights, 8);
     ADD_LOOP(found, 1);
+    ADD_LOOP(needs_no_more, 4);
     ADD_LOOP(hangs, 8);
     ADD_LOOP(on_diagonals, 1);
     ADD_LOOP(bends, 3);
