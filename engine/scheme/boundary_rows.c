@@ -37,19 +37,40 @@ static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const br
     return BRUNT_OK;
 }
 
-// Adds a boundary particle, at distance `gap` from the body; *share: its weight on nodes that have mass.
-static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b,
-                        const double way[3], double *share, brunt_error *error) {
-    const double x[3] = {b->x[0] + way[0], b->x[1] + way[1], b->x[2] + way[2]};
+// Adds `weight` of a boundary particle at x; to *share what of it is on nodes that have mass.
+static int add_place(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b,
+                     const double x[3], double weight, double *share, brunt_error *error) {
     brunt_grid_weights at;
-    *share = 0;
-    brunt_grid_weigh(&rows->bodies->mpm[p->body].grid, x, b->weight, &at);
+    brunt_grid_weigh(&rows->bodies->mpm[p->body].grid, x, weight, &at);
     for (int k = 0; k < at.count; k++) {
         const int32_t n =
             at.weight[k] > 0 ? brunt_unknowns_node_at(rows->unknowns, rows->bodies, p->body, at.at[k]) : BRUNT_NONE;
         if (n < 0) continue;
         if (add_node(rows, p, b, n, at.weight[k], error)) return BRUNT_FAILED;
         *share += at.weight[k];
+    }
+    return BRUNT_OK;
+}
+
+// How many places stand for a boundary particle. Cells of a lattice are cut alike by a line, and what its particles
+// miss of one they miss of all; triangles of a mesh are cut at other places each.
+static int places_of(const brunt_boundary_rows *rows, const brunt_boundary_patch *p) {
+    enum { IN_A_CELL = 32 };
+    const int particles = p->surface->def.particles;
+    const bool mesh = rows->bodies->mpm[p->body].grid.mesh != NULL;
+    return mesh && particles < IN_A_CELL ? (IN_A_CELL + particles - 1) / particles : 1;
+}
+
+// Adds a boundary particle, by places along what it stands for; *share: its weight on nodes that have mass.
+static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b,
+                        const double way[3], double *share, brunt_error *error) {
+    const int places = places_of(rows, p);
+    *share = 0;
+    for (int k = 0; k < places; k++) {
+        const double along = ((k + 0.5) / places - 0.5) * b->weight;
+        double x[3];
+        for (int a = 0; a < 3; a++) x[a] = b->x[a] + way[a] + (places > 1 ? along * b->tangent[0][a] : 0);
+        if (add_place(rows, p, b, x, b->weight / places, share, error)) return BRUNT_FAILED;
     }
     return BRUNT_OK;
 }

@@ -287,8 +287,7 @@ START_TEST(boundary_particles) {
     const bent few = bend(kernels[_i], 0.05, 4, 2), many = bend(kernels[_i], 0.05, 4, 128);
     printf("  %s: end %.1e, moment %.1e apart with 40 and 2560 boundary particles\n", words[_i],
            few.down / many.down - 1, few.moment / many.moment - 1);
-    // In a mesh every triangle of the line is another one: two of them to a cell are few.
-    ck_assert_double_le(fabs(few.down / many.down - 1), kernels[_i] == BRUNT_GRID_MESH ? 3e-4 : 1e-4);
+    ck_assert_double_le(fabs(few.down / many.down - 1), kernels[_i] == BRUNT_GRID_MESH ? 1e-5 : 1e-4);
     ck_assert_double_le(fabs(few.moment / many.moment - 1), 1e-4);
 }
 END_TEST
