@@ -39,6 +39,7 @@ typedef struct barrier_contact {
 // greatest force that friction takes, as an unknown of its own (barrier_slip.c).
 typedef struct barrier_rub {
     double kept[3]; // [m] that the surfaces had given before the step
+    double share;   // of the step's slip that counts: load steps, what came before they met does not
     double slip[3]; // [m] dt times its velocity, and that
     double part[3]; // at most of length 1
     double energy;  // [J] where it was asked for last

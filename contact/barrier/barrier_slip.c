@@ -44,8 +44,16 @@ static slip_law slip_at(const brunt_barrier *b, const barrier_contact *c, const 
     barrier_slip_of(b, c, u, y);
     if (step->before) barrier_slip_of(b, c, step->before, before);
     for (int k = 0; k < 3; k++) y[k] = step->factor * y[k] + (1 - step->factor) * before[k];
-    for (int k = 0; k < 3 && b->keeps; k++) y[k] += b->rub[c - b->lagged.contact].kept[k];
+    if (b->keeps) {
+        const barrier_rub *rub = &b->rub[c - b->lagged.contact];
+        for (int k = 0; k < 3; k++) y[k] = rub->kept[k] + rub->share * y[k];
+    }
     return law_at(b, c, y);
+}
+
+// How the slip that counts follows u.
+static double slip_rate(const brunt_barrier *b, const barrier_contact *c) {
+    return b->step.factor * (b->keeps ? b->rub[c - b->lagged.contact].share : 1);
 }
 
 // [N]
@@ -55,7 +63,7 @@ static double greatest_force(const brunt_barrier *b, const barrier_contact *c) {
 }
 
 double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, const double *u) {
-    return greatest_force(b, c) * slip_at(b, c, u).potential / b->step.factor;
+    return greatest_force(b, c) * slip_at(b, c, u).potential / slip_rate(b, c);
 }
 
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]) {
@@ -81,9 +89,28 @@ void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, con
 // Put into the balance of forces that gives the gradient as it is, and for the Hessian r (1 - (1/r)' w y^T / |y|),
 // which is positive as long as |w| <= 1, and which is the true one where w = r y. Its symmetric part is taken.
 
+// [m] How far the features have come to each other in the step, along where they push now.
+static double approach_of(const brunt_barrier *b, const barrier_contact *c, const double *u) {
+    double apart = 0;
+    for (int i = 0; i < c->at.places; i++) {
+        double move[3];
+        barrier_move(b, c->place[i], u, move);
+        for (int k = 0; k < 3; k++) apart += c->at.w[i] * move[k] * c->at.n[k];
+    }
+    return -apart;
+}
+
+// Surfaces that meet within a load step rub from where their gap came below the distance, on a straight way.
+static double share_of(const brunt_barrier *b, const barrier_contact *c, const double *u) {
+    const double within = barrier_law_of(b, c->law).distance - (c->at.d - c->offset);
+    const double approach = b->keeps ? approach_of(b, c, u) : 0;
+    return approach > within ? within / approach : 1;
+}
+
 void barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub) {
     *rub = (barrier_rub){.energy = 0};
     barrier_kept_slip(b, c, rub->kept);
+    rub->share = share_of(b, c, u);
     const slip_law s = slip_at(b, c, u);
     for (int k = 0; k < 3; k++) rub->slip[k] = s.y[k], rub->part[k] = s.ratio * s.y[k];
 }
@@ -109,27 +136,30 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
     const slip_law s = slip_at(b, c, u);
     const double *n = c->at.n, greatest = greatest_force(b, c), slope = barrier_contact_force_slope(b, c),
                  mu = c->normal_force > 0 ? greatest / c->normal_force : 0;
-    double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], apart = 0;
+    double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], slip[3];
+    const double apart = -approach_of(b, c, u), share = share_of(b, c, u);
     brunt_closest_hessian(&c->at, dim, 0, 1, turn);
-    for (int i = 0; i < places; i++) {
-        barrier_move(b, c->place[i], u, move[i]);
-        for (int k = 0; k < 3; k++) apart += c->at.w[i] * move[i][k] * n[k];
-    }
+    for (int i = 0; i < places; i++) barrier_move(b, c->place[i], u, move[i]);
+    barrier_slip_of(b, c, u, slip);
     // d(r y) = r (dy + (r'/r) y (y . dy) / |y|), and r' / r = -(1/r)' r
     const double bend = s.size > 0 ? s.ratio * s.bend / s.size : 0;
     for (int j = 0; j < places; j++)
         for (int l = 0; l < dim; l++) {
             const int column = j * dim + l;
-            double dn[3] = {0}, dw[BRUNT_CLOSEST_PLACES] = {0}, dy[3] = {0}, across = 0, along = 0, normal = 0;
+            double dn[3] = {0}, dw[BRUNT_CLOSEST_PLACES] = {0}, dy[3] = {0}, across = 0, along = 0, normal = 0,
+                   turned = 0;
             for (int k = 0; k < dim; k++) dn[k] = turn[k * rows + column];
             for (int i = 1; i < places; i++)
                 for (int k = 0; k < dim; k++) dw[i] += n[k] * turn[(i * dim + k) * rows + column];
             for (int k = 0; k < dim; k++) {
                 dy[k] = (k == l) * c->at.w[j];
                 for (int i = 1; i < places; i++) dy[k] += dw[i] * move[i][k];
-                across += dy[k] * n[k], normal += dn[k] * s.y[k];
+                across += dy[k] * n[k], normal += dn[k] * s.y[k], turned += dn[k] * slip[k];
             }
-            for (int k = 0; k < dim; k++) dy[k] -= across * n[k] + apart * dn[k] + normal * n[k];
+            // The share is that of the gap within the distance in the approach, -apart.
+            const double more = share < 1 ? (c->at.w[j] * n[l] - share * (across + turned)) / apart : 0;
+            for (int k = 0; k < dim; k++)
+                dy[k] = share * (dy[k] - across * n[k] - apart * dn[k]) - normal * n[k] + more * slip[k];
             for (int k = 0; k < dim; k++) along += s.y[k] * dy[k];
             const double dF = mu * slope * c->at.w[j] * n[l];
             for (int k = 0; k < dim; k++) {
@@ -143,7 +173,7 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
 void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
                           double *h) {
     const slip_law s = slip_at(b, c, u);
-    const double scale = b->step.factor * greatest_force(b, c) * s.ratio, bend = s.size > 0 ? s.bend / s.size / 2 : 0;
+    const double scale = slip_rate(b, c) * greatest_force(b, c) * s.ratio, bend = s.size > 0 ? s.bend / s.size / 2 : 0;
     const int rows = c->at.places * b->dim;
     for (int i = 0; i < c->at.places; i++)
         for (int j = 0; j < c->at.places; j++)

@@ -139,25 +139,57 @@ START_TEST(derivatives_of_whole_terms) {
 END_TEST
 
 // Friction that follows what presses, and what has been kept of the step before: forces without an energy, whose
-// derivative is not symmetric. Of points at facets, at vertices and at planes, that creep and that slip.
+// derivative is not symmetric. Of points at facets, at vertices and at planes, that creep and that slip; of points that
+// have met the surface in this step, most of which were beyond the distance before it.
 START_TEST(friction_that_follows_has_its_derivative) {
-    static const int of_points[] = {0, 1, 4, 5, 6};
+    static const int of_points[] = {0, 1, 4, 5, 6, 4, 5, 6};
+    enum { MEETING = 5 };
     for (size_t k = 0; k < sizeof of_points / sizeof *of_points; k++)
         for (int slips = 0; slips < 2; slips++) {
             barrier_case *c = make_case(of_points[k]);
             const brunt_team team = {c->threads, NULL};
             double *u = case_unknowns(c);
-            c->pair[0].slip_speed = slips ? 1e-3 : 0.5;
+            const double size = k < MEETING ? 1e-3 : 4e-3;
+            c->pair[0].slip_speed = slips ? 1e-3 : k < MEETING ? 0.5 : 10;
+            if (k >= MEETING) c->pair[0].distance = 0.014;
             case_ready(c);
             ck_assert_int_eq(brunt_barrier_keep_slips(c->barrier, NULL), BRUNT_OK);
-            draw_unknowns(c, u, 1e-3, 23);
+            draw_unknowns(c, u, size, 23);
             ck_assert_int_eq(brunt_barrier_keep(c->barrier, &team, u, NULL), BRUNT_OK);
-            draw_unknowns(c, u, 1e-3, 24);
+            draw_unknowns(c, u, size, 24);
             brunt_barrier_follow(c->barrier, true);
             const double lean = check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8, false);
             ck_assert_msg(lean > 1e-2, "case %d: symmetric to %g", of_points[k], lean);
             free(u), case_end(c);
         }
+}
+END_TEST
+
+// A point comes to a flat surface from three distances away to half of one, and moves along it on its way: in load
+// steps it rubs from where it met the surface, a fifth of that; in steps of time all of it is its speed.
+START_TEST(load_steps_rub_from_where_surfaces_meet) {
+    for (int keeps = 0; keeps < 2; keeps++) {
+        barrier_case *c = case_begin(2);
+        const brunt_team team = {c->threads, NULL};
+        const double distance = 0.01, slip = 4e-3, give = 5e-3, x = (keeps ? 0.2 : 1) * slip / give;
+        case_polygon(c, 0, (double[][2]){{-1, 0}, {1, 0}, {0, -1}}, 3);
+        case_polygon(c, 1, (double[][2]){{0.1, 3 * distance}, {0.3, 1}, {-0.1, 1}}, 3);
+        case_pair(c, 0, 1, distance, 1e5)->friction = 0.3;
+        c->pair[0].slip_speed = give / c->dt;
+        case_ready(c);
+        if (keeps) ck_assert_int_eq(brunt_barrier_keep_slips(c->barrier, NULL), BRUNT_OK);
+        double *u = case_unknowns(c), *g = case_unknowns(c);
+        for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = slip, u[2 * c->node[v] + 1] = -2.5 * distance;
+        case_lag(c, u);
+        const brunt_term rub = brunt_barrier_friction_term(c->barrier), push = brunt_barrier_term(c->barrier);
+        case_look(c, u, NULL);
+        push.ops->gradient(push.self, &team, u, g);
+        const double pressed = -g[2 * c->node[3] + 1];
+        rub.ops->gradient(rub.self, &team, u, g);
+        ck_assert_double_gt(pressed, 0);
+        ck_assert_double_eq_tol(g[2 * c->node[3]], 0.3 * pressed * (2 * x - x * x), 1e-12 * pressed);
+        free(u), free(g), case_end(c);
+    }
 }
 END_TEST
 
@@ -524,6 +556,7 @@ int main(void) {
     TCase *terms = tcase_create("terms");
     tcase_add_test(terms, derivatives_of_whole_terms);
     tcase_add_test(terms, friction_that_follows_has_its_derivative);
+    tcase_add_test(terms, load_steps_rub_from_where_surfaces_meet);
     tcase_add_test(terms, sums_are_constant_along_a_polygon);
     tcase_add_test(terms, sums_are_constant_along_a_triangulation);
     tcase_add_test(terms, a_pair_has_the_energy_of_its_method);
