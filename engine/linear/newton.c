@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/memory.h"
 
 enum { HALVINGS = 60, FEW_HALVINGS = 12, MEMORY = 3 };
@@ -426,6 +427,28 @@ static int iterate(newton_run *r, bool *last) {
     return *last ? ask_balance(r, last) : BRUNT_OK;
 }
 
+// What gives way: the greatest component of the direction in which the matrix, as it is factored, is least, by inverse
+// iteration. As loads grow by little that is the one in which it has just become negative.
+static void find_weakest(newton_run *r) {
+    enum { ROUNDS = 30 };
+    double *x = r->n->trial, *y = r->n->step, along = 0;
+    if (r->n->linear.report.negative == 0) return; // it has no factors
+    for (int64_t i = 0; i < unknowns(r); i++)
+        x[i] = r->problem->held && r->problem->held[i] ? 0 : ldexp((double)(int64_t)brunt_mix((uint64_t)i + 1), -63);
+    for (int round = 0; round < ROUNDS; round++) {
+        double square = 0;
+        if (brunt_linear_solve(&r->n->linear, r->team, x, y, NULL) != BRUNT_LINEAR_DONE) return;
+        along = 0;
+        for (int64_t i = 0; i < unknowns(r); i++) along += x[i] * y[i], square += y[i] * y[i];
+        if (!(square > 0)) return;
+        for (int64_t i = 0; i < unknowns(r); i++) x[i] = y[i] / sqrt(square);
+    }
+    if (!(along < 0)) return;
+    r->report->weakest_dof = 0;
+    for (int64_t i = 0; i < unknowns(r); i++)
+        if (fabs(x[i]) > fabs(x[r->report->weakest_dof])) r->report->weakest_dof = i;
+}
+
 // Whether what has converged is a minimum: the matrix as it is has no negative pivots.
 static int check_stable(newton_run *r) {
     const bool direct = r->options->solver == &brunt_linear_direct || r->options->fallback;
@@ -439,6 +462,7 @@ static int check_stable(newton_run *r) {
     if (open_solver(r, &brunt_linear_direct)) return BRUNT_FAILED;
     const brunt_linear_status status = factor(r);
     if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
+    if (status == BRUNT_LINEAR_INDEFINITE) find_weakest(r);
     return broken(r, status == BRUNT_LINEAR_INDEFINITE ? BRUNT_NEWTON_UNSTABLE : BRUNT_NEWTON_BROKEN);
 }
 
@@ -486,7 +510,7 @@ static int begin(newton_run *r) {
 int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
                           const brunt_newton_options *options, double *u, brunt_newton_report *report,
                           brunt_error *error) {
-    *report = (brunt_newton_report){.residual_dof = -1, .step_where = -1, .least_share = 1};
+    *report = (brunt_newton_report){.residual_dof = -1, .weakest_dof = -1, .step_where = -1, .least_share = 1};
     newton_run run = {
         .n = newton, .team = team, .problem = problem, .options = options, .report = report, .error = error, .u = u};
     bool last = false;
@@ -498,7 +522,7 @@ int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const br
 
 int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
                       const brunt_newton_options *options, double *u, brunt_newton_way *lead, brunt_error *error) {
-    brunt_newton_report report = {.residual_dof = -1, .step_where = -1, .least_share = 1};
+    brunt_newton_report report = {.residual_dof = -1, .weakest_dof = -1, .step_where = -1, .least_share = 1};
     newton_run run = {
         .n = newton, .team = team, .problem = problem, .options = options, .report = &report, .error = error, .u = u};
     double *p = lead->p;

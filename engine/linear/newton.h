@@ -74,6 +74,7 @@ typedef struct brunt_newton_report {
     double least_share;      // smallest part of a step that was taken
     double residual;         // greatest component of the gradient [J/m], the last time it was taken
     int64_t residual_dof;    // which it is: node * dim + component; -1: none
+    int64_t weakest_dof;     // unstable: what goes farthest where the matrix is least; -1: it is not known
     brunt_energy_sum energy; // at u
 } brunt_newton_report;
 

@@ -248,6 +248,24 @@ void brunt_implicit_follow(brunt_plan *plan) {
 
 // ------------------------------------------------------------------------------------------ the step
 
+// What gives way first, where an equilibrium is none that lasts.
+static int fail_unstable(brunt_world *world, const brunt_newton_report *report, const char *why, brunt_error *error) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_unknowns *u = &m->unknowns;
+    char reason[600];
+    const bool known = report->weakest_dof >= 0;
+    snprintf(
+        reason, sizeof reason,
+        "the equilibrium of the loads at %.6g is unstable, it buckles, snaps through or turns over%s; that at %.6g "
+        "is stable (down to a part %.3g of a load step, newton.cut). Of the forces that act %.3g are left. %s",
+        world->clock.time + m->dt, known ? ", here most" : "", world->clock.time, m->dt / world->settings.fixed_step,
+        report->unbalance, why);
+    if (!known) return brunt_fail_step(&world->clock, NULL, error, reason);
+    const brunt_unknown_location at =
+        brunt_unknowns_location(u, &world->bodies, (int32_t)(report->weakest_dof / u->dim));
+    return brunt_fail_position(world, at.body, at.x, error, reason);
+}
+
 // Body, place and reason of a step that did not converge, the last of those that were tried in place of `wanted`.
 static int fail_try(brunt_world *world, double wanted, const brunt_newton_report *report, brunt_error *error) {
     const struct brunt_implicit *m = world->plan.implicit;
@@ -260,13 +278,7 @@ static int fail_try(brunt_world *world, double wanted, const brunt_newton_report
         snprintf(reason, sizeof reason, "it is flat or turned over where the step begins: %s", why);
         if (brunt_fail_turned(world, error, reason)) return BRUNT_FAILED;
     }
-    if (report->result == BRUNT_NEWTON_UNSTABLE) {
-        snprintf(reason, sizeof reason,
-                 "the equilibrium of the loads at %.6g is unstable, it buckles, snaps through or turns over; that at "
-                 "%.6g is stable (down to a part %.3g of a load step, newton.cut): %s",
-                 world->clock.time + m->dt, world->clock.time, m->dt / world->settings.fixed_step, why);
-        return brunt_fail_step(&world->clock, NULL, error, reason);
-    }
+    if (report->result == BRUNT_NEWTON_UNSTABLE) return fail_unstable(world, report, why, error);
     if (dof < 0) return brunt_fail_step(&world->clock, NULL, error, why);
     if (m->still)
         snprintf(tried, sizeof tried, "a part %.4g of a load step", m->dt / world->settings.fixed_step);

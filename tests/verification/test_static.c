@@ -312,6 +312,8 @@ START_TEST(buckles) {
     } else {
         ck_assert_int_eq(status, BRUNT_FAILED);
         ck_assert(strstr(error.message, "is unstable") != NULL);
+        ck_assert_str_eq(error.body, "column"); // which gives way most at its end
+        ck_assert_double_eq_tol(error.position[1], 1, 0.01);
         ck_assert_double_eq_tol(brunt_world_time(world) * top * h, P, 0.01 * P);
         ck_assert_double_eq_tol(node_way(world, 0, 0, 1, 0), 0, 1e-6); // what is kept is the straight column
     }
