@@ -155,8 +155,10 @@ static void add_links(brunt_history *h, const brunt_world *world) {
     add(h, "links.slipping", "1", sums.slipping);
 }
 
+// In load steps nothing has any.
 static void add_momentum(brunt_history *h, brunt_world *world) {
     brunt_momentum m;
+    if (brunt_world_static(world)) return;
     brunt_world_momentum(world, &m);
     add_vector(h, "momentum.linear", "kg m/s", m.linear);
     add_vector(h, "momentum.angular", "kg m^2/s", m.angular);

@@ -252,7 +252,7 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "phases", phases_of(s, world));
     json_object_set_new(o, "effects", effects_of(world));
     json_object_set_new(o, "energy", energy_of(world));
-    json_object_set_new(o, "momentum", momentum_of(world));
+    if (!brunt_world_static(world)) json_object_set_new(o, "momentum", momentum_of(world));
     json_object_set_new(o, "eroded", eroded_of(world));
     set_newton(o, world);
     json_t *boundaries = boundaries_of(world);
@@ -387,12 +387,17 @@ static void print_rate(brunt_console *console, double count, double steps, doubl
                             1e9 * seconds / (count * steps), what);
 }
 
+static void print_momentum(brunt_world *world, brunt_console *console) {
+    brunt_momentum m;
+    if (brunt_world_static(world)) return; // nothing has any: the balance of forces is what says how well it is solved
+    brunt_world_momentum(world, &m);
+    brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
+}
+
 void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt_world *world, brunt_console *console) {
     double steps = (double)brunt_world_steps(world);
     char counts[64];
     brunt_counts(world, counts);
-    brunt_momentum m;
-    brunt_world_momentum(world, &m);
     brunt_console_print(console, "%s: %s\n", s->status, s->reason);
     brunt_console_print(console, "scene %s, brunt %s, %dD, %d thread%s, %s\n", scene->name, BRUNT_VERSION,
                         brunt_world_dimension(world), brunt_world_threads(world),
@@ -408,7 +413,7 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_newton(world, console);
     print_balance(world, console);
     print_links(world, console);
-    brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
+    print_momentum(world, console);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
     print_measures(s, scene, console);
 }

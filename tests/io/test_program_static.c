@@ -246,6 +246,8 @@ START_TEST(links_are_told) {
     char path[200];
     small_put("square.yaml", square);
     small_expect("run square.yaml -t 1 -o out", 0, "links: 18 bodies push each other, mean ");
+    // Nothing moves, and nothing is told of momenta.
+    ck_assert_int_ne(small_shell("grep -q momentum output out/history.csv"), 0);
     const int last = read_column("out", "links.count", count) - 1;
     read_column("out", "links.mean", mean), read_column("out", "links.sd", sd);
     read_column("out", "links.slipping", slipping);
@@ -265,6 +267,7 @@ START_TEST(links_are_told) {
     json_t *balance = json_object_get(summary, "balance");
     ck_assert_double_eq(json_real_value(json_object_get(balance, "body")), body[last]);
     ck_assert_ptr_nonnull(json_string_value(json_object_get(balance, "worst")));
+    ck_assert_ptr_null(json_object_get(summary, "momentum"));
     json_decref(summary);
     small_expect("run square.yaml -t 1 -q -o loose --set newton.tolerance=1e-2", 0, NULL);
     read_column("loose", "balance.body", body);
