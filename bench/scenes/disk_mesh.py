@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Writes the mesh of a disk of triangles, fine at its rim: those of pyramid.yaml and brazil_disk.yaml.
 
-usage: disk_mesh.py RADIUS RIM [LAYERS] > NAME.msh     (gmsh 2.2, binary; lengths in metres)
+usage: disk_mesh.py RADIUS RIM [LAYERS [lean]] > NAME.msh     (gmsh 2.2, binary; lengths in metres)
 
 RIM edges on the circle, 3 or 4 times a power of 2; under them LAYERS (default 2) as deep as the edges are long, then half as many edges every
-two layers. The mesh is its own mirror image about both axes.
+two layers. The mesh is its own mirror image about both axes; with `lean` all diagonals lean the same way about the middle, so that all nodes of the
+rim are alike, and it is its own image turned by half a turn.
 """
 import sys
 from cmath import rect
@@ -14,6 +15,7 @@ from gmsh_triangles import write
 
 radius, rim = float(sys.argv[1]), int(sys.argv[2])
 layers = int(sys.argv[3]) if len(sys.argv) > 3 else 2
+lean = sys.argv[4:] == ["lean"]
 
 
 def rings():
@@ -41,7 +43,7 @@ def main():
                 c, d = first + k, first + (k + 1) % n
                 if many == n:
                     a, b = before + k, before + (k + 1) % n
-                    triangles += [(a, b, c), (b, d, c)] if k % 2 else [(a, b, d), (a, d, c)]
+                    triangles += [(a, b, c), (b, d, c)] if lean or k % 2 else [(a, b, d), (a, d, c)]
                 else:
                     a, b, e = before + 2 * k, before + 2 * k + 1, before + (2 * k + 2) % many
                     triangles += [(a, b, c), (b, e, d), (b, d, c)]
