@@ -159,7 +159,7 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
             // The share is that of the gap within the distance in the approach, -apart.
             const double more = share < 1 ? (c->at.w[j] * n[l] - share * (across + turned)) / apart : 0;
             for (int k = 0; k < dim; k++)
-                dy[k] = share * (dy[k] - across * n[k] - apart * dn[k]) - normal * n[k] + more * slip[k];
+                dy[k] = share * dy[k] - (share * (across * n[k] + apart * dn[k]) + normal * n[k]) + more * slip[k];
             for (int k = 0; k < dim; k++) along += s.y[k] * dy[k];
             const double dF = mu * slope * c->at.w[j] * n[l];
             for (int k = 0; k < dim; k++) {
