@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "base/error.h"
+
 enum { WINDOW_PHASES = 32, FIRST_SHARED = 4 };
 static const double WINDOW = 5e-3, WHOLE_WINDOW = 50e-3; // [s] of so many phases at least; of how many ever
 static const double PAUSE = 100;                         // over what the last window took
@@ -13,7 +15,7 @@ static int32_t place_of(const brunt_gain *gain, brunt_task_fn *task) {
         const int32_t at = (int32_t)((hash + (uint64_t)k) % BRUNT_GAIN_TASKS);
         if (!gain->tasks[at].task || gain->tasks[at].task == task) return at;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task, int64_t count) {
