@@ -1,4 +1,3 @@
-// Labels: conservation
 // What touches take comes back at release (contact.touch elastic), through the public interface: bars, walls that stand
 // and move, friction, oblique cubes, a restart in the middle, a body that leaves past a rim, and none of it where a
 // scene does not want it.

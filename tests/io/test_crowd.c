@@ -1,5 +1,3 @@
-// Labels: io
-//
 // Crowds: what is drawn is even or normal and of each member alone, members are where their lattice says, and a scene
 // of thousands is read and made at once.
 #include <math.h>

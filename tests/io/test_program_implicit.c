@@ -1,4 +1,3 @@
-// Labels: io
 // Implicit steps through the program: what check, summary and history say of them, explicit steps of the same scene, a
 // run in two legs, and a step that does not converge.
 #include "tests/support/small_program.h"

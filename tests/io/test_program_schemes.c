@@ -1,4 +1,3 @@
-// Labels: io
 // time.scheme alone changes a scene between explicit and implicit steps: keys of both beside each other, and all
 // implicit scenes of bench/scenes, which explicit steps take, or say why not.
 #include "tests/support/small_program.h"

@@ -1,5 +1,3 @@
-// Labels: io
-//
 // Friction of load steps, as a user meets it: Coulomb's law, what surfaces have given is kept from step to step and
 // over a restart, and what has no equilibrium is said with body and exit code 70.
 #include "tests/support/small_program.h"

@@ -1,4 +1,3 @@
-// Labels: io
 // The table of keys: fields hold what their rows store in them. Keys and words in their spelling of one version ago
 // mean the same scene, with a warning at the place that names the new one; both spellings at once are a mistake.
 #include <check.h>

@@ -1,4 +1,3 @@
-// Labels: stability
 // Hard cases of implicit steps and barriers: steps up to 1000 times those of explicit ones, stiffness of contact and
 // moduli over many powers of ten, a single particle, bodies that nothing holds, contact that opens within a step, nodes
 // with next to no mass, elements next to flat or turned over. Each step converges or ends with a reason.

@@ -1,4 +1,3 @@
-// Labels: stability
 // Implicit contact looked at otherwise: the same collision mirrored, turned, moved far away, seen from a frame that
 // moves, its bodies in another order or named the other way round; the other body thrown; what stands still while
 // something else moves; gaps of exactly the barrier's distance; a closed box; friction 0 and no friction, turns by 0.

@@ -1,4 +1,3 @@
-// Labels: stability
 // Ninety-six random small scenes of implicit steps: two bodies of elements or points, and sometimes a plane, with
 // moduli, densities, barriers, friction and steps over many powers of ten. Each step converges, with forces that
 // balance, or ends with body, place, time and reason.

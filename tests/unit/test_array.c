@@ -1,4 +1,3 @@
-// Labels: unit
 // Growable arrays: what they keep, what is zero, when a block is taken.
 #include <check.h>
 #include <stdint.h>

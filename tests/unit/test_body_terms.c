@@ -1,4 +1,3 @@
-// Labels: unit
 // What bodies add to an implicit step: gradient and Hessian against differences of the energy, motions that cost
 // nothing, the same bits with any number of threads, what the volume allows, and the commit.
 #include "linear/assembly.h"

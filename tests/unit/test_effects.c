@@ -1,4 +1,3 @@
-// Labels: unit
 // Every effect that a scene can ask for is said by the plan: by a scene that asks for it, by no other; with a
 // coefficient of 0 it is off. And the table of passes is one: names, units, parts.
 #include <check.h>

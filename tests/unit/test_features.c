@@ -1,4 +1,3 @@
-// Labels: unit
 // Edges and corners of surfaces: their mean normal, known in closed form where all faces are at right angles.
 #include <check.h>
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels:
 // Whether threads pay (base/gain.h), on machines that are made up: no clock is read but where phases are really run.
 #include "tests/support/suite.h"
 

@@ -1,4 +1,3 @@
-// Labels: unit
 // Block matrices against dense ones, solvers against Gauss, what they say of matrices that are not positive definite,
 // and the same bits for any number of threads.
 #include <check.h>

@@ -1,5 +1,3 @@
-// Labels: unit
-//
 // Scenes of thousands of bodies: what is kept of their pairs grows with the bodies, not with their pairs, and those
 // that lie in each other are found among them.
 #include "../support/def_world.h"

@@ -1,5 +1,3 @@
-// Labels: unit
-//
 // Scenes of more boundaries than a byte counts, as those of hundreds of bodies have: each acts, on the bodies that it
 // names and no others.
 #include "tests/support/def_world.h"

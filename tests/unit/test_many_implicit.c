@@ -1,5 +1,3 @@
-// Labels: unit
-//
 // Implicit steps of hundreds of bodies: those that are near each other are pairs, and no others; more bodies than a
 // byte counts; bodies of points that are tied, all, some, and all but some.
 #include "contact/barrier/barrier.h"

@@ -1,5 +1,3 @@
-// Labels: unit
-//
 // What scenes of many bodies cost in comparisons of names, which do not depend on what else the machine does: four
 // times the bodies take some four times as many, while they are read, made into a world, and written about.
 #include "body/bodies.h"

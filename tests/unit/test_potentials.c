@@ -1,4 +1,3 @@
-// Labels: unit
 // The potentials of models: stress is the potential's derivative, the tangent the stress's; turns are free; a commit
 // leaves what the explicit update of the same deformation leaves, and the energy that the potential says.
 #include <check.h>

@@ -1,4 +1,3 @@
-// Labels: unit
 // Parts of a world that a wrong write has broken are noticed between two steps.
 #include "contact/search/node_to_facet_parts.h"
 #include "tests/support/broken_world.h"

@@ -1,4 +1,3 @@
-// Labels: unit
 // Parts of implicit steps that a wrong write has broken are noticed between two steps.
 #include "contact/barrier/barrier_parts.h"
 #include "scheme/implicit.h"

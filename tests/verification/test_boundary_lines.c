@@ -1,4 +1,3 @@
-// Labels: verification
 // Lines anywhere in the grid that hold implicit material points: reactions, places, approach, release, friction.
 #include <math.h>
 

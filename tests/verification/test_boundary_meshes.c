@@ -1,4 +1,3 @@
-// Labels: verification
 // Surfaces of facets anywhere in the grid that hold implicit material points: reactions, places, release, friction.
 #include <math.h>
 

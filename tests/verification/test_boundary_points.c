@@ -1,4 +1,3 @@
-// Labels: verification
 // Lines and surfaces of facets that hold explicit material points: reactions, places, approach, release, friction,
 // turns.
 #include <math.h>

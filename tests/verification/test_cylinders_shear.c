@@ -1,5 +1,3 @@
-// Labels: io
-//
 // Two cylinders pressed onto each other, then sheared (bench/scenes/cylinders_shear.yaml): tractions along both rims
 // are those of Hertz, and of Cattaneo and Mindlin, of the forces that are computed, within 5 % (L2) with 15 edges to
 // half the contact and 2 % with 30; what sticks is as wide as theirs to one edge.

@@ -1,4 +1,3 @@
-// Labels: verification
 // Lines and surfaces with a mass in explicit steps: free flight, tops, drop weights, momenta and energy with what they
 // hit.
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels: verification
 // Barriers in implicit steps: weight at rest, sliding, impacts, planes that move, prescribed motion, bits.
 #include <math.h>
 

@@ -1,4 +1,3 @@
-// Labels: verification
 // Implicit steps of viscous fluids: a shear wave decays as in closed form, of both integrators to their order; a film
 // between plates flows as Couette and Poiseuille say; what viscosity takes is in the ledger; as in explicit steps.
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels: verification
 // Implicit steps of materials that have no potential: a slow press comes to what explicit steps come to, to first order
 // in the step; Newton's method converges as its square; threads and restart.
 #include <math.h>

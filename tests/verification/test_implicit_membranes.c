@@ -1,4 +1,3 @@
-// Labels: verification
 // Implicit steps of membranes: order in time, hanging, what they carry, contact by barriers at half their thickness,
 // momentum, energy, threads, restart.
 #include <math.h>

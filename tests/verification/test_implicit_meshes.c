@@ -1,4 +1,3 @@
-// Labels: verification
 // Implicit steps of meshes: order in time and space, free fall, hanging, momentum, energy, threads, restart.
 #include <math.h>
 

@@ -1,4 +1,3 @@
-// Labels: verification
 // Planes in implicit and load steps hold material points as lines of the same condition do, wherever they lie in the
 // grid, and push them on any slope.
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels: verification
 // Implicit steps of material points: free fall, momentum, energy, rest under gravity, threads, all kernels and
 // transfers; ties; against explicit steps.
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels: verification
 // Implicit and load steps of material points beside planes of symmetry: a part of a body moves as it does in the whole,
 // by each kernel and transfer, solver, dimension, up to three planes across each other, on either side of them.
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels: verification
 // bench/scenes/moving_cone.yaml in coarse cells: grains stay inside of the cone that is lifted, or fall out below it.
 #include <math.h>
 

@@ -1,4 +1,3 @@
-// Labels: verification
 // Load steps: a bar that hangs, a beam that bends, columns that buckle, what nothing holds, contact, work, bits.
 #include <math.h>
 

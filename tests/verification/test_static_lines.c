@@ -1,4 +1,3 @@
-// Labels: verification
 // Load steps with lines and surfaces: as implicit steps without end, what they press, let go, hold and do not hold.
 #include <math.h>
 

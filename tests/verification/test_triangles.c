@@ -1,4 +1,3 @@
-// Labels: verification
 // Material points over triangles, of cells that are cut in two and of a mesh: what links a point to nodes, and implicit
 // and static steps with lines that hold the body.
 #include <math.h>

@@ -1,4 +1,3 @@
-// Labels: verification
 // Lines and surfaces that turn in implicit and in load steps: what sticks goes with them as it is, what slips is not
 // taken along, friction takes it along by what presses, and the work is force times way.
 #include <math.h>
