@@ -3,19 +3,34 @@
 // A correction says how far a minimum is, not what forces are left: where something is very stiff - a barrier of large
 // stiffness, friction with a large coefficient or a small slip speed - next to no way is a large force. Elastic forces
 // within a body add up to nothing, so that what is left of the sum over its nodes is what contact, loads and inertia
-// are off by. A body may be off by a velocity below the tolerance, or by a small part of the forces on it.
+// are off by. A body may be off by a velocity below the tolerance, or by a small part of the forces on it. What is left
+// within it, elastic forces too, does work over the step that no account has: it is to be as small a part of the work
+// of the forces on it, or next to nothing of all energy there has been.
 #include <math.h>
 
 #include "scheme/implicit.h"
 
-static const double SMALL_FORCE = 1e-4; // of all forces on a body, node by node
+static const double SMALL = 1e-4;  // of all forces on a body, node by node; of their work
+static const double LITTLE = 1e-6; // of the energy that the ledger's error is told of
 
 typedef struct body_forces {
     double left[3], mass[3]; // [N] sum over its free components, [kg] of those
     double all;              // [N] sizes of contact, loads, inertia and what holders give
+    double work, all_work;   // [J] of what is left over the step; sizes of that of contact, loads and inertia
+    double momentum;         // [kg m] sizes of free components' motion over the step
     double worst;            // [N] greatest that is left at a node
     int32_t node;            // which it is
 } body_forces;
+
+// [N] sizes of contact, load and inertia on a component. Newmark's method begins where the forces at the start lead to:
+// friction that turns around within a step then hardly acts, however large it is.
+static double node_forces(const struct brunt_implicit *m, const double *u, int64_t k) {
+    const brunt_fields *f = &m->field;
+    const double mass = m->unknowns.mass[k / m->unknowns.dim], drift = f->aim[k] - m->dt * m->unknowns.velocity[k];
+    const double start = mass * drift / m->inertia.c, contact = f->step[k];
+    return fmin(fabs(contact), fabs(contact - start)) + fabs(f->load[k]) +
+           fabs(mass * (u[k] - f->aim[k]) / m->inertia.c + start);
+}
 
 // Nodes [begin, end), with gradients of contact and surfaces in `field.step`, of all else in `field.gradient`.
 static void add_nodes(const struct brunt_implicit *m, const double *u, int32_t begin, int32_t end, body_forces *sum) {
@@ -28,8 +43,10 @@ static void add_nodes(const struct brunt_implicit *m, const double *u, int32_t b
             sum->all += fabs(left);
             continue;
         }
+        const double acts = node_forces(m, u, k);
         sum->left[k % dim] += left, sum->mass[k % dim] += mass;
-        sum->all += fabs(f->step[k]) + fabs(f->load[k]) + mass * fabs(u[k] - f->aim[k]) / m->inertia.c;
+        sum->all += acts;
+        sum->work += left * u[k], sum->all_work += acts * fabs(u[k]), sum->momentum += mass * fabs(u[k]);
         if (fabs(left) >= sum->worst) sum->worst = fabs(left), sum->node = (int32_t)(k / dim);
     }
 }
@@ -44,11 +61,14 @@ static void add_points(const struct brunt_implicit *m, const double *u, int i, b
 static double off_by(const struct brunt_implicit *m, const body_forces *sum) {
     double most = 0;
     for (int a = 0; a < m->unknowns.dim; a++) {
-        const double allowed = fmax(m->tolerance * sum->mass[a] / m->dt, SMALL_FORCE * sum->all);
+        const double allowed = fmax(m->tolerance * sum->mass[a] / m->dt, SMALL * sum->all);
         const double part = sum->left[a] == 0 ? 0 : fabs(sum->left[a]) / allowed;
         if (!(part <= most)) most = part;
     }
-    return most;
+    const double whole = LITTLE * m->world->ledger.energy_scale;
+    const double work = fmax(fmax(m->tolerance * sum->momentum / m->dt, SMALL * sum->all_work), whole);
+    const double part = sum->work == 0 ? 0 : fabs(sum->work) / work;
+    return part <= most ? most : part;
 }
 
 static void add_gradients(const struct brunt_implicit *m, int first, int end, const double *u, double *g) {

@@ -1,6 +1,6 @@
 // Ninety-six random small scenes of implicit steps: two bodies of elements or points, and sometimes a plane, with
 // moduli, densities, barriers, friction and steps over many powers of ten. Each step converges, with forces that
-// balance, or ends with body, place, time and reason.
+// balance, or ends with body, place, time and reason. So do neighbours of those whose way hangs on last digits.
 #include <math.h>
 
 #include "tests/support/def_world.h"
@@ -22,7 +22,13 @@ static double random_part(uint64_t *state) { // splitmix64 (Steele, Lea and Floo
     return (double)((z ^ z >> 31) >> 11) / 9007199254740992.0;
 }
 
-static double between(uint64_t *state, double low, double high) { return low + (high - low) * random_part(state); }
+static int neighbour; // of the scene: which other last digits it has; 0: its own
+
+static double between(uint64_t *state, double low, double high) {
+    uint64_t digit = *state + (uint64_t)neighbour;
+    const double units = neighbour ? floor(5 * random_part(&digit)) - 2 : 0;
+    return (low + (high - low) * random_part(state)) * (1 + units * 2.220446049250313e-16);
+}
 static double power(uint64_t *state, double low, double high) { return pow(10, between(state, low, high)); }
 static int one_of(uint64_t *state, int count) { return (int)(count * random_part(state)); }
 
@@ -152,12 +158,26 @@ static void run(uint64_t seed, sweep *sum) {
     brunt_world_def_free(&scene.def);
 }
 
+// Scenes that have been found to end Newton's method with forces that balance, and an account that does not:
+// corrections were small beside forces that cancel.
+START_TEST(neighbours) {
+    static const int scenes[] = {56, 72};
+    sweep sum = {0};
+    for (int k = 0; k < 2; k++)
+        for (neighbour = 1; neighbour <= 4; neighbour++) run((uint64_t)scenes[k], &sum);
+    neighbour = 0;
+    hard_case("C30", sum.off, 1e-3, 1e-3, "neighbours of two random scenes: momentum off by, of all that was given");
+    hard_case("C30", sum.energy, 1e-4, 1e-4, "neighbours of two random scenes: error of the energy's account");
+    ck_assert_int_eq(sum.silent, 0);
+}
+END_TEST
+
 START_TEST(random_scenes) {
     sweep sum = {0};
     for (int k = 0; k < SCENES; k++) run((uint64_t)k, &sum);
     hard_case("C30", sum.silent, 0, 0, "%d random scenes, of which some end: neither converge nor say why", SCENES);
     hard_case("C30", sum.off, 1e-3, 1e-3, "%d random scenes: momentum off by, of all that was given", SCENES);
-    hard_case("C30", sum.energy, 1e-3, 1e-3, "%d random scenes: error of the energy's account", SCENES);
+    hard_case("C30", sum.energy, 1e-3, 1e-4, "%d random scenes: error of the energy's account", SCENES);
     ck_assert_int_le(sum.ended, SCENES / 8);
 }
 END_TEST
@@ -165,6 +185,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("implicit_sweep");
     ADD_LOOP(random_scenes, 1);
+    ADD_LOOP(neighbours, 1);
     return suite_main(suite);
 }
 #endif
