@@ -89,6 +89,8 @@ def misplaced(mistakes):
 
 
 def main():
+    if any(part.startswith("-") for part in sys.argv[1:]):
+        sys.exit(__doc__.strip())
     every = list(read(os.path.join(SOURCE, "tests", "mutations.txt")))
     if sys.argv[1:] == ["check"]:
         sys.exit(1 if misplaced(every) else 0)

@@ -1,6 +1,6 @@
 // Distance between two bodies near a node: the algorithm of Gilbert, Johnson and Keerthi (1988).
 //
-// What a body has near a node is the convex hull of its particles, each an ellipsoid of material (particle_extent.c);
+// What a body has near a node is the convex hull of its particles, each an ellipsoid of material (particle_cloud.c);
 // only the farthest point along a direction is ever asked for. The difference of two hulls holds the origin when they
 // overlap; else its point nearest the origin gives distance and direction. That point is approached by simplices of at
 // most four support points. Every direction tried bounds the distance from below, and the best bound is what is
@@ -11,8 +11,8 @@
 #include "contact/distance/gjk.h"
 
 enum { MAX_POINTS = 4, MAX_ROUNDS = 24 };
-static const double CLOSE_ENOUGH = 1e-13; // relative gap between bound and distance
-static const double OVERLAP = 1e-9;       // cells: nearer to the origin than this is in it
+static const double CLOSE_ENOUGH = 1e-8; // relative gap between bound and distance
+static const double OVERLAP = 1e-9;      // cells: nearer to the origin than this is in it
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -47,12 +47,12 @@ static bool solve(int n, double m[3][3], const double r[3], double x[3]) {
     return true;
 }
 
-// Point of the hull of `points` nearest the origin; drops the points it does not need. Every face is tried: there are
-// 15 at most.
+// Point of the hull of `points` nearest the origin; drops the points it does not need. The last one is nearer than the
+// hull of the others was: every face that it is a corner of is tried, 8 at most.
 static void nearest(double points[MAX_POINTS][3], int *count, double v[3]) {
     double best = INFINITY;
-    int best_faces = 1;
-    for (int mask = 1; mask < 1 << *count; mask++) {
+    int best_faces = 1 << (*count - 1);
+    for (int mask = 1 << (*count - 1); mask < 1 << *count; mask++) {
         int use[MAX_POINTS], n = 0;
         for (int i = 0; i < *count; i++)
             if (mask >> i & 1) use[n++] = i;
@@ -83,15 +83,16 @@ static void nearest(double points[MAX_POINTS][3], int *count, double v[3]) {
     *count = kept;
 }
 
-double brunt_gjk_distance(const brunt_extent_cloud *a, const brunt_extent_cloud *b, double h, double share,
-                          const double start[3], double n[3]) {
+double brunt_gjk_distance(const brunt_cloud *a, const brunt_cloud *b, double h, bool reach, const double start[3],
+                          double n[3]) {
     double points[MAX_POINTS][3], v[3] = {start[0], start[1], start[2]}, bound = 0;
     int count = 0;
     for (int round = 0; round < MAX_ROUNDS; round++) {
         double size = sqrt(dot(v, v)), along[3], back[3], pa[3], pb[3], w[3];
         if (!(size > OVERLAP * h) || !isfinite(size)) return 0;
         for (int k = 0; k < 3; k++) along[k] = v[k] / size, back[k] = -along[k];
-        if (!isfinite(brunt_extent_of(a, share, along, pa)) || !isfinite(brunt_extent_of(b, share, back, pb))) return 0;
+        if (!isfinite(brunt_cloud_extent(a, reach, along, pa)) || !isfinite(brunt_cloud_extent(b, reach, back, pb)))
+            return 0;
         for (int k = 0; k < 3; k++) w[k] = pb[k] - pa[k];
         double reached = dot(w, along);
         if (reached > bound) {

@@ -2,7 +2,7 @@
 //
 // Only slots that two or more bodies have alive are looked at, and only nodes where two have mass. There, per pair:
 //   normal   from a to b, along -grad phi_a + grad phi_b of the volume fractions: n_ba = -n_ab to the bit
-//   gap      between the surfaces as the particles near the node have them (particle_extent.c), not as the kernels feel
+//   gap      between the surfaces as the particles near the node have them (particle_cloud.c), not as the kernels feel
 //   them approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it;
 //   bodies not
 //            yet within reach are left alone
@@ -42,7 +42,7 @@ typedef struct group {
 } group;
 // Of each thread: two bodies near a node, and what went wrong at one of its nodes.
 typedef struct thread_work {
-    brunt_extent_cloud cloud[2];
+    brunt_cloud cloud[2];
     brunt_error error;
 } thread_work;
 
@@ -93,7 +93,7 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace->groups);
     brunt_free(workspace->accounts);
     for (int t = 0; t < workspace->thread_count; t++)
-        for (int k = 0; k < 2; k++) brunt_extent_cloud_free(&workspace->thread[t].cloud[k]);
+        for (int k = 0; k < 2; k++) brunt_cloud_free(&workspace->thread[t].cloud[k]);
     brunt_free(workspace->thread);
     brunt_free(workspace);
 }
@@ -241,10 +241,10 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     return true;
 }
 
-static double gap_along(const brunt_extent_cloud *a, const brunt_extent_cloud *b, const double n[3]) {
+static double gap_along(const brunt_cloud *a, const brunt_cloud *b, const double n[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
     double far_a[3], far_b[3];
-    return -brunt_extent_of(b, 1, back, far_b) - brunt_extent_of(a, 1, n, far_a);
+    return -brunt_cloud_extent(b, true, back, far_b) - brunt_cloud_extent(a, true, n, far_a);
 }
 
 // Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
@@ -254,21 +254,21 @@ static double gap_along(const brunt_extent_cloud *a, const brunt_extent_cloud *b
 // Whether anything tells the bodies apart.
 static bool make_normal(const job *j, const member *a, const member *b, int node, thread_work *thread, double n[3],
                         double *gap) {
-    brunt_extent_cloud *cloud = thread->cloud;
+    brunt_cloud *cloud = thread->cloud;
     double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
-    brunt_extent_gradient(a->body, a->slot, node, ga, ca);
-    brunt_extent_gradient(b->body, b->slot, node, gb, cb);
+    if (brunt_cloud_gather(a->body, a->slot, node, &cloud[0], &thread->error) ||
+        brunt_cloud_gather(b->body, b->slot, node, &cloud[1], &thread->error))
+        return false;
+    brunt_cloud_gradient(&cloud[0], &a->body->grid, ga, ca);
+    brunt_cloud_gradient(&cloud[1], &b->body->grid, gb, cb);
     for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
     if (!make_unit(j, a, node, n)) return false;
-    if (brunt_extent_gather(a->body, a->slot, node, &cloud[0], &thread->error) ||
-        brunt_extent_gather(b->body, b->slot, node, &cloud[1], &thread->error))
-        return false;
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
     *gap = gap_along(&cloud[0], &cloud[1], n);
     if (approach * j->m->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return true;
     for (int centres = 0; centres <= 1; centres++) {
         double direct[3], found, h = (double)a->body->grid.h;
-        if (!(brunt_gjk_distance(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
+        if (!(brunt_gjk_distance(&cloud[0], &cloud[1], h, !centres, between, direct) > 0)) continue;
         if (!make_unit(j, a, node, direct) || !((found = gap_along(&cloud[0], &cloud[1], direct)) > *gap)) continue;
         *gap = found;
         memcpy(n, direct, sizeof direct);

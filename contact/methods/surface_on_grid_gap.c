@@ -168,25 +168,24 @@ static double gap_of(const view *v, const touch *t, double side) {
     return (t->beside ? 1 : side) * t->height - v->half - t->radius;
 }
 
-static void find_least(void *context, brunt_body *body, int64_t s, const int base[3]) {
-    (void)base;
-    view *v = context;
-    const touch *t = &v->w->touch[s];
-    if (!t->near) return;
-    const double front = gap_of(v, t, 1), back = gap_of(v, t, -1);
-    v->front = front < v->front ? front : v->front, v->back = back < v->back ? back : v->back;
-    if (!t->beside) v->side += weight_of(v, body, s) * t->height;
+// The least gaps in front and behind, and on which side of a membrane particles are.
+static void find_least(view *v, brunt_body *body, const brunt_slot_run *run) {
+    for (int64_t s = run->first; s < run->first + run->count; s++) {
+        const touch *t = &v->w->touch[s];
+        if (!t->near) continue;
+        v->front = fmin(gap_of(v, t, 1), v->front), v->back = fmin(gap_of(v, t, -1), v->back);
+        if (!t->beside) v->side += weight_of(v, body, s) * t->height;
+    }
 }
 
-static void add_normal(void *context, brunt_body *body, int64_t s, const int base[3]) {
-    (void)base;
-    view *v = context;
-    const touch *t = &v->w->touch[s];
-    if (!t->near) return;
-    const double behind = gap_of(v, t, v->side) - v->least;
-    if (behind > v->band) return;
-    const double share = weight_of(v, body, s) * (1 - behind / v->band) * (t->beside ? 1 : v->side);
-    for (int a = 0; a < 3; a++) v->sum[a] += share * t->n[a];
+static void add_normals(view *v, brunt_body *body, const brunt_slot_run *run) {
+    for (int64_t s = run->first; s < run->first + run->count; s++) {
+        const touch *t = &v->w->touch[s];
+        const double behind = t->near ? gap_of(v, t, v->side) - v->least : INFINITY;
+        if (behind > v->band) continue;
+        const double share = weight_of(v, body, s) * (1 - behind / v->band) * (t->beside ? 1 : v->side);
+        for (int a = 0; a < 3; a++) v->sum[a] += share * t->n[a];
+    }
 }
 
 // Gap between the facets and what the particles near a node reach, and the mean direction to those that are nearest.
@@ -194,15 +193,17 @@ static void find_gap(const job *j, contact *c) {
     brunt_body *body = &j->m->mpm[c->mpm];
     const brunt_contact_surface *s = j->m->surface;
     const brunt_fem_body *fem = s->fem[c->fem];
+    brunt_slot_run runs[BRUNT_MAX_SLOT_RUNS];
     view v = {.w = j->w, .x = c->x, .front = INFINITY, .back = INFINITY};
     v.band = BAND * body->spacing, v.support = 0.5 * (body->grid.order + 1) * (double)body->grid.h;
     v.half = fem->traits->membrane && s->membrane.side ? s->membrane.side[fem->index].half : 0;
     c->gap = INFINITY;
-    brunt_extent_visit(body, c->slot, c->node, find_least, &v);
+    const int count = brunt_extent_runs(body, c->slot, c->node, runs);
+    for (int q = 0; q < count; q++) find_least(&v, body, &runs[q]);
     v.side = fem->traits->membrane && v.side < 0 ? -1 : 1;
     v.least = v.side > 0 ? v.front : v.back;
     if (!isfinite(v.least)) return;
-    brunt_extent_visit(body, c->slot, c->node, add_normal, &v);
+    for (int q = 0; q < count; q++) add_normals(&v, body, &runs[q]);
     for (int a = 0; a < 3; a++) c->n[a] = c->across[a] * v.sum[a];
     if (make_unit(c->n)) c->gap = v.least;
 }

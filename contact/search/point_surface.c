@@ -10,7 +10,7 @@ static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a
 
 void brunt_neighbours_free(brunt_neighbours *list) {
     brunt_free(list->near);
-    brunt_extent_cloud_free(&list->centres);
+    brunt_cloud_free(&list->centres);
 }
 
 double brunt_point_extent(brunt_body *body, int64_t s, const double n[3]) {
@@ -107,10 +107,9 @@ int brunt_neighbours_find(brunt_body *body, double range, const double x[3], bru
 }
 
 int brunt_neighbours_centres(brunt_neighbours *list, double range, brunt_error *error) {
-    if (brunt_extent_cloud_points(&list->centres, list->near_count, error)) return BRUNT_FAILED;
+    if (brunt_cloud_points(&list->centres, list->near_count, error)) return BRUNT_FAILED;
     for (int32_t i = 0; i < list->near_count; i++)
-        if (dot(list->near[i].d, list->near[i].d) < range * range)
-            brunt_extent_cloud_point(&list->centres, list->near[i].d);
+        if (dot(list->near[i].d, list->near[i].d) < range * range) brunt_cloud_point(&list->centres, list->near[i].d);
     return BRUNT_OK;
 }
 

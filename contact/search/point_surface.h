@@ -2,7 +2,7 @@
 // far it reaches.
 #pragma once
 
-#include "contact/distance/particle_extent.h"
+#include "contact/distance/particle_cloud.h"
 
 // Particles of a body about a place.
 typedef struct brunt_neighbour {
@@ -15,7 +15,7 @@ typedef struct brunt_neighbours {
     brunt_neighbour *near;
     size_t near_capacity;
     int32_t near_count;
-    brunt_extent_cloud centres; // of the nearest of them, as brunt_neighbours_centres fills it
+    brunt_cloud centres; // of the nearest of them, as brunt_neighbours_centres fills it
 } brunt_neighbours;
 
 void brunt_neighbours_free(brunt_neighbours *list);

@@ -182,7 +182,8 @@ static int least_distance(const look *l, touch_list *list, double n[3], bool *ap
     if (brunt_neighbours_centres(&list->own, OWN * l->slave->spacing, error) ||
         brunt_neighbours_centres(&list->other, l->range, error))
         return BRUNT_FAILED;
-    *apart = brunt_gjk_distance(&list->other.centres, &list->own.centres, (double)l->slave->grid.h, 0, start, n) > 0;
+    *apart =
+        brunt_gjk_distance(&list->other.centres, &list->own.centres, (double)l->slave->grid.h, false, start, n) > 0;
     return BRUNT_OK;
 }
 

@@ -2,7 +2,7 @@
 // Material points that are rings about an axis: closed forms of rings, cylinders, tubes, bars and spheres, the axis
 // itself, contact, the ledgers, and the bits.
 #include "tests/support/def_world.h"
-#include "contact/distance/particle_extent.h"
+#include "contact/distance/particle_cloud.h"
 #include "world/world.h"
 
 #ifdef BRUNT_FLOAT
@@ -492,13 +492,15 @@ START_TEST(no_surface_inside) {
     def_box(&def, "rod", XYZ(0, 0, 0), XYZ(10 * h, 10 * h, 0));
     brunt_world *world = world_take(&def);
     brunt_body *body = &world->bodies.mpm[0];
+    brunt_cloud cloud = {.count = 0};
     int inside = 0, outer = 0;
     for (int32_t s = 0; s < body->grid.slot_count; s++)
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
             double x[3], gradient[3], centre[3];
             brunt_node_position(&body->grid, body->grid.slots[s].coord, node, x);
             if (x[0] < 1.9 * h || x[0] > 10.1 * h || x[1] < 1.9 * h || x[1] > 8.1 * h) continue;
-            brunt_extent_gradient(body, s, node, gradient, centre);
+            ck_assert_int_eq(brunt_cloud_gather(body, s, node, &cloud, NULL), BRUNT_OK);
+            brunt_cloud_gradient(&cloud, &body->grid, gradient, centre);
             ck_assert_double_le(fabs(gradient[1]) * h, TOLERANCE(1e-12, 1e-4));
             if (x[0] < 8.1 * h) {
                 ck_assert_double_le(fabs(gradient[0]) * h, TOLERANCE(1e-12, 1e-4));
@@ -511,6 +513,7 @@ START_TEST(no_surface_inside) {
         }
     ck_assert_int_gt(inside, 30);
     ck_assert_int_gt(outer, 5);
+    brunt_cloud_free(&cloud);
     brunt_world_destroy(world);
 }
 END_TEST

@@ -1,0 +1,240 @@
+// What bodies of material points have near a node of their grid (contact/distance): every particle whose kernel reaches
+// the node and none twice, how far they extend, the gradient of their volume, and the distance of two such clouds.
+#include "base/array.h"
+#include "contact/distance/gjk.h"
+#include "tests/support/def_world.h"
+#include "tests/support/material_point.h"
+#include "tests/support/numbers.h"
+#include "world/world.h"
+
+enum { TRIES = 100, POINTS = 40 };
+static const double h = 0.1;
+
+// ------------------------------------------------------------------------------------------ gathered from a grid
+
+typedef struct form {
+    int dim;
+    brunt_kernel kernel;
+    bool rings;
+} form;
+static const form forms[] = {{2, BRUNT_LINEAR, false},   {2, BRUNT_QUADRATIC, false}, {2, BRUNT_CUBIC, false},
+                             {2, BRUNT_QUADRATIC, true}, {3, BRUNT_LINEAR, false},    {3, BRUNT_QUADRATIC, false},
+                             {3, BRUNT_CUBIC, false}};
+
+// A block of points off the lines of the grid, each sheared and stretched in its own way.
+static brunt_world *make_block(form is, uint64_t *state) {
+    brunt_world_def def = def_begin(is.dim, h);
+    def.kernel = is.kernel, def.axisymmetric = is.rings;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY; // asks for what particles reach
+    def_box(&def, "other", XYZ(2, 0.12, -0.11), XYZ(2.2, 0.3, is.dim == 3 ? 0.1 : 0))->spacing = 0.5 * h;
+    def_box(&def, "block", XYZ(0.03, 0.12, -0.11), XYZ(0.63, 0.82, is.dim == 3 ? 0.39 : 0))->spacing = 0.5 * h;
+    brunt_world *world = world_take(&def);
+    brunt_particles *p = &world->bodies.mpm[0].particles;
+    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    for (int64_t s = 0; s < p->slots; s++)
+        for (int r = 0; r < is.dim; r++)
+            for (int c = 0; c < is.dim; c++)
+                F[r * p->point_dim + c][s] += (real)(p->id[s] < 0 ? 0 : draw_between(state, -0.2, 0.2));
+    return world;
+}
+
+static double weight(brunt_kernel kernel, double d) {
+    const double a = fabs(d);
+    if (kernel == BRUNT_LINEAR) return fmax(0, 1 - a);
+    if (kernel == BRUNT_QUADRATIC) return a < 0.5 ? 0.75 - a * a : 0.5 * pow(fmax(0, 1.5 - a), 2);
+    return a < 1 ? 2.0 / 3 + a * a * (0.5 * a - 1) : pow(fmax(0, 2 - a), 3) / 6;
+}
+
+// The volume fraction at a place, by all particles of the body.
+static double fraction(brunt_body *body, form is, const double at[3]) {
+    brunt_particles *p = &body->particles;
+    double sum = 0;
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        double share = (double)brunt_plane_volume(p, s) / pow(h, is.dim);
+        for (int a = 0; a < is.dim; a++)
+            share *= weight(is.kernel, ((double)brunt_field(p, BRUNT_FIELD_position)[a][s] - at[a]) / h);
+        sum += share;
+    }
+    return sum;
+}
+
+static double least_weight(brunt_body *body, form is, int64_t s, const double at[3]) {
+    double least = 1;
+    for (int a = 0; a < is.dim; a++)
+        least = fmin(
+            least, weight(is.kernel, ((double)brunt_field(&body->particles, BRUNT_FIELD_position)[a][s] - at[a]) / h));
+    return least;
+}
+
+// Particles that the node feels are in its runs, once each.
+static void check_runs(brunt_body *body, form is, int32_t slot, int node, const double at[3]) {
+    static int seen[1 << 16];
+    brunt_slot_run runs[BRUNT_MAX_SLOT_RUNS];
+    const brunt_particles *p = &body->particles;
+    ck_assert_int_lt(p->slots, 1 << 16);
+    memset(seen, 0, sizeof seen);
+    const int count = brunt_extent_runs(body, slot, node, runs);
+    for (int q = 0; q < count; q++)
+        for (int64_t s = runs[q].first; s < runs[q].first + runs[q].count; s++) seen[s]++;
+    for (int64_t s = 0; s < p->slots; s++) {
+        ck_assert_int_le(seen[s], 1);
+        if (p->id[s] >= 0 && least_weight(body, is, s, at) > 1e-6) ck_assert_int_eq(seen[s], 1);
+    }
+}
+
+static void check_gradient(brunt_body *body, form is, const brunt_cloud *cloud, const double at[3]) {
+    const double step = 1e-5 * h;
+    double gradient[3], centre[3];
+    brunt_cloud_gradient(cloud, &body->grid, gradient, centre);
+    for (int a = 0; a < is.dim; a++) {
+        double to[2][3];
+        for (int side = 0; side < 2; side++) memcpy(to[side], at, sizeof to[side]), to[side][a] += side ? step : -step;
+        const double slope = (fraction(body, is, to[1]) - fraction(body, is, to[0])) / (2 * step);
+        // Linear kernels have a kink; no particle is as near to a line of the grid.
+        ck_assert_double_eq_tol(gradient[a] * h, slope * h, TOLERANCE(1e-6, 1e-1));
+        ck_assert_double_le(fabs(centre[a]), 2 * h);
+    }
+    for (int a = is.dim; a < 3; a++) ck_assert_double_eq(gradient[a], 0);
+}
+
+// No point of the balls' images goes farther, and one goes as far.
+static void check_extents(brunt_body *body, const brunt_cloud *cloud, int32_t slot, int node, uint64_t *state) {
+    brunt_particles *p = &body->particles;
+    brunt_slot_run runs[BRUNT_MAX_SLOT_RUNS];
+    double n[3] = {draw_between(state, -1, 1), draw_between(state, -1, 1),
+                   p->dim == 3 ? draw_between(state, -1, 1) : 0};
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    double at[3], most[2] = {-INFINITY, -INFINITY}, far[3];
+    for (int a = 0; a < 3; a++) n[a] /= length;
+    brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, at);
+    const int count = brunt_extent_runs(body, slot, node, runs);
+    for (int q = 0; q < count; q++)
+        for (int64_t s = runs[q].first; s < runs[q].first + runs[q].count; s++) {
+            double along = 0;
+            for (int a = 0; a < p->dim; a++)
+                along += ((double)brunt_field(p, BRUNT_FIELD_position)[a][s] - at[a]) * n[a];
+            most[0] = fmax(most[0], along), most[1] = fmax(most[1], along + brunt_extent_along(body, s, n));
+        }
+    for (int share = 0; share <= 1; share++) {
+        const double extent = brunt_cloud_extent(cloud, share == 1, n, far);
+        if (!count) continue;
+        ck_assert_double_ge(most[1], most[0] + 0.1 * h);
+        ck_assert_double_eq_tol(extent, most[share], TOLERANCE(1e-14, 1e-6));
+        ck_assert_double_eq_tol(far[0] * n[0] + far[1] * n[1] + far[2] * n[2], extent, TOLERANCE(1e-14, 1e-6));
+    }
+}
+
+START_TEST(a_cloud_is_what_the_node_feels) {
+    uint64_t state = (uint64_t)_i + 7;
+    const form is = forms[_i];
+    brunt_world *world = make_block(is, &state);
+    brunt_body *body = &world->bodies.mpm[0];
+    brunt_cloud cloud = {.count = 0};
+    int full = 0;
+    for (int k = 0; k < TRIES; k++) {
+        const int32_t slot = draw_whole(&state, body->grid.slot_count);
+        const int node = draw_whole(&state, BRUNT_BLOCK_NODES);
+        double at[3];
+        brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, at);
+        ck_assert_int_eq(brunt_cloud_gather(body, slot, node, &cloud, NULL), BRUNT_OK);
+        check_runs(body, is, slot, node, at);
+        check_extents(body, &cloud, slot, node, &state);
+        if (fabs(fraction(body, is, at)) > 0) check_gradient(body, is, &cloud, at), full++;
+    }
+    ck_assert_int_gt(full, TRIES / 10);
+    brunt_cloud_free(&cloud);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// What is freed of stress keeps its place: a particle of volume 0 counts with that of its lattice.
+START_TEST(what_is_freed_keeps_its_place) {
+    uint64_t state = 3;
+    for (int dim = 2; dim <= 3; dim++) {
+        brunt_world *world = make_block((form){dim, BRUNT_QUADRATIC, false}, &state);
+        brunt_body *body = &world->bodies.mpm[0];
+        real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+        for (int64_t s = 0; s < body->particles.slots; s++)
+            for (int k = 0; k < dim * dim; k++) F[k][s] = k % (dim + 1) == 0;
+        real *volume = brunt_field(&body->particles, BRUNT_FIELD_reference_volume)[0];
+        brunt_cloud cloud[2] = {{.count = 0}};
+        double gradient[2][3], centre[2][3];
+        for (int freed = 0; freed < 2; freed++) {
+            body->keeps = freed;
+            for (int64_t s = 0; freed && s < body->particles.slots; s++) volume[s] = 0;
+            ck_assert_int_eq(brunt_cloud_gather(body, 0, BRUNT_BLOCK_NODES - 1, &cloud[freed], NULL), BRUNT_OK);
+            brunt_cloud_gradient(&cloud[freed], &body->grid, gradient[freed], centre[freed]);
+        }
+        ck_assert_int_gt(cloud[0].count, 0);
+        for (int a = 0; a < dim; a++)
+            ck_assert_double_eq_tol(gradient[1][a], gradient[0][a], TOLERANCE(1e-10, 1e-3) / h);
+        brunt_cloud_free(&cloud[0]), brunt_cloud_free(&cloud[1]);
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
+
+// ------------------------------------------------------------------------------------------ distance of two clouds
+
+// Points in a ball of radius 1 about `at`.
+static void fill(brunt_cloud *cloud, const double at[3], uint64_t *state) {
+    ck_assert_int_eq(brunt_cloud_points(cloud, POINTS, NULL), BRUNT_OK);
+    for (int i = 0; i < POINTS; i++) {
+        double x[3], square = 0;
+        for (int a = 0; a < 3; a++) x[a] = draw_between(state, -1, 1), square += x[a] * x[a];
+        for (int a = 0; a < 3; a++) x[a] = at[a] + x[a] / fmax(1, sqrt(square));
+        brunt_cloud_point(cloud, x);
+    }
+}
+
+static double apart_along(const brunt_cloud *a, const brunt_cloud *b, const double n[3]) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    double far[3];
+    return -brunt_cloud_extent(b, false, back, far) - brunt_cloud_extent(a, false, n, far);
+}
+
+// The distance is that along its direction, along no other are they farther apart, and swapped it is the same.
+START_TEST(no_direction_parts_two_clouds_more) {
+    uint64_t state = 11;
+    const double origin[3] = {0};
+    brunt_cloud cloud[2] = {{.count = 0}};
+    int apart = 0, together = 0;
+    for (int k = 0; k < 20 * TRIES; k++) {
+        double at[3], n[3], m[3], start[3];
+        for (int a = 0; a < 3; a++) at[a] = draw_between(&state, -2.2, 2.2), start[a] = draw_between(&state, -1, 1);
+        fill(&cloud[0], origin, &state), fill(&cloud[1], at, &state);
+        const double d = brunt_gjk_distance(&cloud[0], &cloud[1], h, false, at, n);
+        const double other = brunt_gjk_distance(&cloud[1], &cloud[0], h, false, start, m);
+        ck_assert_double_eq_tol(d, other, 1e-7);
+        if (d > 0) {
+            ck_assert_double_eq_tol(apart_along(&cloud[0], &cloud[1], n), d, 1e-12);
+            for (int a = 0; a < 3; a++) ck_assert_double_eq_tol(n[a], -m[a], 1e-3);
+            apart++;
+        } else {
+            together++;
+        }
+        for (int q = 0; q < 30; q++) {
+            double length = 0;
+            for (int a = 0; a < 3; a++) m[a] = draw_between(&state, -1, 1), length += m[a] * m[a];
+            for (int a = 0; a < 3; a++) m[a] /= sqrt(length);
+            ck_assert_double_le(apart_along(&cloud[0], &cloud[1], m), d + 1e-7);
+        }
+    }
+    ck_assert_int_gt(apart, TRIES);
+    ck_assert_int_gt(together, TRIES);
+    brunt_cloud_free(&cloud[0]), brunt_cloud_free(&cloud[1]);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("particle_cloud");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 120);
+    tcase_add_loop_test(all, a_cloud_is_what_the_node_feels, 0, BRUNT_COUNT(forms));
+    tcase_add_test(all, what_is_freed_keeps_its_place);
+    tcase_add_test(all, no_direction_parts_two_clouds_more);
+    suite_add_tcase(suite, all);
+    return suite_main(suite);
+}
