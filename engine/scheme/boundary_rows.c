@@ -226,7 +226,7 @@ static void take_way(brunt_boundary_surface *s, double now, double dt, brunt_bou
 
 static int go_round(brunt_boundary_rows *rows, const build *b, brunt_error *error) {
     const double now = b->world->clock.time;
-    rows->here = rows->gap, rows->reached = 0, rows->passed = NULL;
+    rows->here = rows->gap, rows->reached = 0, rows->passed = rows->too_far = NULL;
     if (b->adds) rows->patch_count = 0, rows->version++, rows->unseen = NULL, rows->first[0] = 0;
     for (int k = 0; k < rows->surfaces->count; k++) {
         brunt_boundary_surface *s = &rows->surfaces->surface[k];
@@ -234,7 +234,7 @@ static int go_round(brunt_boundary_rows *rows, const build *b, brunt_error *erro
         if (b->adds && b->looks && brunt_boundary_window_follow(s, rows->bodies, rows->unknowns->dim, error))
             return BRUNT_FAILED;
         take_way(s, now, rows->dt, &extent);
-        if (brunt_boundary_surface_turns_far(s))
+        if (brunt_boundary_surface_turns_far(s) && (rows->too_far = s))
             return brunt_fail(error, BRUNT_FAILED,
                               "boundary '%s' turns by %.3g rad within a step, a quarter of a turn is the most: shorter "
                               "ones are wanted",

@@ -45,8 +45,9 @@ typedef struct brunt_boundary_rows {
     bool any_leave;  // surfaces that material may leave
     // One that material comes to from where no node of it is, one that it went through, NULL: none.
     const brunt_boundary_surface *unseen, *passed;
-    int64_t sweeps; // of the run
-    int swept;      // in the iteration under way
+    const brunt_boundary_surface *too_far; // turns by too much within the step
+    int64_t sweeps;                        // of the run
+    int swept;                             // in the iteration under way
     size_t patch_capacity, first_capacity, node_capacity, weight_capacity, mark_capacity, gap_capacity, dense_capacity;
 } brunt_boundary_rows;
 

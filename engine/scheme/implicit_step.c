@@ -344,6 +344,7 @@ static int go_and_rub(struct brunt_implicit *m, brunt_newton_report *report, bru
 static int solve_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     int status = begin_try(world, dt, error);
+    if (status && m->holds && m->rows.too_far) report->result = BRUNT_NEWTON_BLOCKED; // a shorter step may do
     if (!status) status = lead(m, error);
     if (!status) status = coast(m, error);
     if (!status) status = m->still && m->rubs ? go_and_rub(m, report, error) : go_and_minimise(m, report, error);
