@@ -33,6 +33,7 @@ typedef struct newton_run {
     double before;           // measure of the step before; 0: not of a full, unprojected one
     bool plain;              // the matrix was taken as it is
     bool looked;             // at u
+    bool endless;            // what terms keep beside u followed without end
 } newton_run;
 
 brunt_newton_options brunt_newton_defaults(void) {
@@ -228,8 +229,9 @@ static brunt_linear_status sweep(newton_run *r) {
         changed = false;
         for (int t = 0; t < r->problem->count; t++) {
             const brunt_term *term = r->problem->terms + t;
-            if (term->ops->sweep && term->ops->sweep(term->self, r->u, n->step, n->gradient, &changed, r->error))
-                return BRUNT_LINEAR_FAILED;
+            if (!term->ops->sweep) continue;
+            r->endless = term->ops->sweep(term->self, r->u, n->step, n->gradient, &changed, r->error) != BRUNT_OK;
+            if (r->endless) return BRUNT_LINEAR_FAILED;
         }
         if (!changed) break;
         gather(r, n->gradient);
@@ -299,7 +301,8 @@ static int find_step(newton_run *r) {
         phase(r, BRUNT_NEWTON_SOLVE);
         const brunt_linear_status status = try_matrix(r);
         if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
-        if (status != BRUNT_LINEAR_INDEFINITE) return broken(r, BRUNT_NEWTON_BROKEN);
+        if (status != BRUNT_LINEAR_INDEFINITE)
+            return broken(r, r->endless ? BRUNT_NEWTON_BLOCKED : BRUNT_NEWTON_BROKEN);
         if (MORE_SHIFT * shift > SHIFT_LIMIT) return broken(r, BRUNT_NEWTON_INDEFINITE);
     }
 }

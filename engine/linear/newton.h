@@ -56,7 +56,7 @@ typedef enum brunt_newton_result {
     BRUNT_NEWTON_BAD_START,  // the energy is not finite where it begins
     BRUNT_NEWTON_ITERATIONS, // tolerance not reached within as many, or balance
     BRUNT_NEWTON_INDEFINITE, // no positive definite matrix, projected and shifted
-    BRUNT_NEWTON_BLOCKED,    // a term lets no step be taken
+    BRUNT_NEWTON_BLOCKED,    // a term lets no step be taken, or what it keeps follows without end
     BRUNT_NEWTON_UPHILL,     // no step, however short, lowers the energy
     BRUNT_NEWTON_UNSTABLE,   // converged, to what is no minimum
     BRUNT_NEWTON_BROKEN      // memory, the solver, or a number that is not finite

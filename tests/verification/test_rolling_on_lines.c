@@ -1,0 +1,44 @@
+// What rolls on lines in implicit steps, lets go of them and comes again: no step without end.
+#include <math.h>
+
+#include "tests/support/implicit_world.h"
+#include "tests/support/surface_world.h"
+
+#ifdef BRUNT_FLOAT
+int main(void) { return 0; } // implicit steps want double
+#else
+
+static const double CELL = 0.12, RADIUS = 0.5, G = 9.81;
+
+// A disk on a slope of 60 degrees, that does not slip.
+static brunt_world *disk(brunt_integrator integrator, brunt_fill fill, double step, int cut) {
+    brunt_world_def def = def_begin(2, CELL);
+    const double s = sin(PI / 3), c = cos(PI / 3);
+    def_material(&def, "neo-hookean", 7800, 2e9, 0.3);
+    hold_by_surfaces(&def, 2, step);
+    brunt_body_def *b = def_ball(&def, "disk", XYZ(RADIUS * s, RADIUS * c, 0), RADIUS);
+    b->fill = fill, b->particles_per_cell = 16;
+    def_line(&def, -2 * c, 2 * s, 12 * c, -12 * s, BRUNT_SEPARATE)->friction = 2;
+    def.gravity[1] = -G;
+    def.integrator = integrator;
+    def.newton.tolerance = 1e-10, def.newton.cut = cut;
+    return world_take(&def);
+}
+
+// Where its tractions find no end a shorter step does.
+START_TEST(goes_on) {
+    brunt_newton_counts n;
+    brunt_world *world = disk(BRUNT_EULER, _i % 2 ? BRUNT_FILL_RINGS : BRUNT_FILL_REGULAR, 7.5e-3 * (1 + _i / 2), 6);
+    world_until(world, 0.7);
+    brunt_world_newton(world, &n, NULL);
+    printf("  case %d: %g cuts of %g steps\n", _i, n.cuts, n.steps);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("rolling_on_lines");
+    ADD_LOOP(goes_on, 4);
+    return suite_main(suite);
+}
+#endif
