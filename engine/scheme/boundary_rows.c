@@ -257,14 +257,18 @@ int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, cons
     return go_round(rows, &b, error);
 }
 
-int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brunt_boundary_ways *ways, void *context,
-                             bool *grown, brunt_error *error) {
-    const build look = {.world = world, .looks = true, .ways = ways, .context = context},
-                add = {.world = world, .adds = true};
+int brunt_boundary_rows_look(brunt_boundary_rows *rows, brunt_world *world, brunt_boundary_ways *ways, void *context,
+                             bool *more, brunt_error *error) {
+    const build look = {.world = world, .looks = true, .ways = ways, .context = context};
     const int64_t reached = rows->reached;
     if (go_round(rows, &look, error)) return BRUNT_FAILED;
-    *grown = rows->reached > reached;
-    return *grown ? go_round(rows, &add, error) : BRUNT_OK;
+    *more = rows->reached > reached;
+    return BRUNT_OK;
+}
+
+int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brunt_error *error) {
+    const build add = {.world = world, .adds = true};
+    return go_round(rows, &add, error);
 }
 
 void brunt_boundary_rows_free(brunt_boundary_rows *rows) {

@@ -60,10 +60,12 @@ int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, cons
                              brunt_error *error);
 // How far the material points of a body go within the step, all components of each slot [m].
 typedef const double *brunt_boundary_ways(void *context, int body);
-// The same patches, with what else comes to surfaces that it may leave by these ways. *grown: whether there was more.
-// BRUNT_OK, or BRUNT_FAILED.
-int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brunt_boundary_ways *ways, void *context,
-                             bool *grown, brunt_error *error);
+// Looks for what comes by these ways to surfaces that it may leave. *more: whether there is some that the patches have
+// not. BRUNT_OK, or BRUNT_FAILED.
+int brunt_boundary_rows_look(brunt_boundary_rows *rows, brunt_world *world, brunt_boundary_ways *ways, void *context,
+                             bool *more, brunt_error *error);
+// The same patches anew, with what was found. BRUNT_OK, or BRUNT_FAILED.
+int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brunt_error *error);
 // Sum of the sizes of all forces at u [N].
 double brunt_boundary_rows_forces(const brunt_boundary_rows *rows, const double *u);
 // What it would take to go the way of the step against b alone [N]: rounding leaves some roundings of that.

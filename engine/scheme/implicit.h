@@ -173,8 +173,8 @@ int brunt_implicit_surfaces_begin(brunt_world *world, double dt, brunt_error *er
 // What comes, by u, to surfaces that it may leave. *grown: whether there was more than was known, for another solution.
 // BRUNT_OK, or BRUNT_FAILED: it comes from too far, or went through.
 int brunt_implicit_surfaces_meet(brunt_world *world, bool *grown, brunt_error *error);
-// Adds the forces of their tractions at the start of the step to `force` [N].
-void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *force);
+// Adds the forces of their tractions at the start of the step to `force` [N], with a sign.
+void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double sign, double *force);
 // Keeps the tractions at u: those that the next step begins with.
 void brunt_implicit_surfaces_keep(brunt_world *world);
 // What they did over the step; what they do at its end is added to `field.gradient`. Their tractions are kept.

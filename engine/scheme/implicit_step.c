@@ -26,7 +26,7 @@ static void take_forces(brunt_world *world) {
     brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
     brunt_implicit_ask(m, BRUNT_TRIAL_END);
     brunt_implicit_gradient(m, friction, m->term_count, m->still ? f->u : m->contact.before, f->step);
-    if (m->holds) brunt_implicit_surfaces_before(m, f->force_before);
+    if (m->holds) brunt_implicit_surfaces_before(m, 1, f->force_before);
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) f->force_before[k] -= f->gradient[k] + f->step[k];
 }
 
@@ -324,6 +324,7 @@ static int meet(brunt_world *world, brunt_newton_report *report, brunt_error *er
             return BRUNT_FAILED;
         }
         if (!grown) return BRUNT_OK;
+        if (!m->still) take_acceleration(m), take_aim(m);
         if (minimise(m, report, error) || settle(m, report, error)) return BRUNT_FAILED;
     }
     report->result = BRUNT_NEWTON_ITERATIONS;

@@ -16,17 +16,6 @@ static const double *ways_of(void *context, int body) {
     return m->moved;
 }
 
-int brunt_implicit_surfaces_meet(brunt_world *world, bool *grown, brunt_error *error) {
-    struct brunt_implicit *m = world->plan.implicit;
-    if (brunt_boundary_rows_grow(&m->rows, world, ways_of, m, grown, error)) return BRUNT_FAILED;
-    if (!*grown && m->rows.passed)
-        return brunt_fail(error, BRUNT_FAILED, "material goes through boundary '%s'.", m->rows.passed->boundary->name);
-    if (!m->rows.unseen) return BRUNT_OK;
-    return brunt_fail(error, BRUNT_FAILED,
-                      "material comes to boundary '%s' from farther than the nodes of its grid reach.",
-                      m->rows.unseen->boundary->name);
-}
-
 // Adds the forces of tractions to `sum`, with a sign.
 static void add_forces(const struct brunt_implicit *m, int32_t patch, const double t[3], double sign, double *sum) {
     const int dim = m->unknowns.dim;
@@ -37,8 +26,31 @@ static void add_forces(const struct brunt_implicit *m, int32_t patch, const doub
     }
 }
 
-void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *force) {
-    for (int32_t p = 0; p < m->rows.patch_count; p++) add_forces(m, p, m->rows.patch[p].before, 1, force);
+void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double sign, double *force) {
+    for (int32_t p = 0; p < m->rows.patch_count; p++) add_forces(m, p, m->rows.patch[p].before, sign, force);
+}
+
+// Forces at the start of the step are those of all patches that there are, as the account of the step has them too:
+// where a piece has just let go its traction is still that of the end of the last step.
+static int grow(brunt_world *world, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const bool before = m->weights.work < 1;
+    if (before) brunt_implicit_surfaces_before(m, -1, m->field.force_before);
+    if (brunt_boundary_rows_grow(&m->rows, world, error)) return BRUNT_FAILED;
+    if (before) brunt_implicit_surfaces_before(m, 1, m->field.force_before);
+    return BRUNT_OK;
+}
+
+int brunt_implicit_surfaces_meet(brunt_world *world, bool *grown, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    if (brunt_boundary_rows_look(&m->rows, world, ways_of, m, grown, error)) return BRUNT_FAILED;
+    if (*grown && grow(world, error)) return BRUNT_FAILED;
+    if (!*grown && m->rows.passed)
+        return brunt_fail(error, BRUNT_FAILED, "material goes through boundary '%s'.", m->rows.passed->boundary->name);
+    if (!m->rows.unseen) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_FAILED,
+                      "material comes to boundary '%s' from farther than the nodes of its grid reach.",
+                      m->rows.unseen->boundary->name);
 }
 
 // ------------------------------------------------------------------------------------------ the account

@@ -190,7 +190,16 @@ START_TEST(rolls) {
     const brunt_body_sums after = world_sums(world, 0);
     const double d[3] = {after.centre[0] - before.centre[0], after.centre[1] - before.centre[1]};
     const double way = 3 * (0.5 * 0.55 * 0.55 + 0.5 * 0.05 * 0.55 + 0.05 * 0.05 / 6);
-    printf("  rolls %.4f of what slides, across %+.1e cells\n", along(&l, d) / way, across(&l, d) / CELL);
+    // The mean of what presses is the weight across the line, but for what speed the disk has across it at the end.
+    const brunt_reaction f = world_boundary(world, 0);
+    const double weight = 5 * after.mass * (0.6 - 0.5 * 0.05), pressed = across(&l, f.impulse) / weight,
+                 left = across(&l, after.momentum) / weight;
+    printf("  rolls %.4f of what slides, across %+.1e cells; pressed by %.5f of its weight, momentum %+.5f\n",
+           along(&l, d) / way, across(&l, d) / CELL, pressed, left);
+    ck_assert_double_eq_tol(pressed - left, 1, 1e-3);
+    const double turns =
+        0.5 * CELL / (2 * 0.4); // of its way from point to point of its rim, half each side of a corner
+    ck_assert_double_le(fabs(left), turns * 3 * 2 / 3 / 5);
     ck_assert_double_eq_tol(along(&l, d) / way, 2.0 / 3, 0.035); // its lattice and kernels turn harder
     ck_assert_double_le(fabs(across(&l, d)), 0.03 * CELL);
     ck_assert_double_le(world_momentum(world).angular_drift, 10 * ROUNDING);

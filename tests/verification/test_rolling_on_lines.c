@@ -1,4 +1,4 @@
-// What rolls on lines in implicit steps, lets go of them and comes again: no step without end.
+// What rolls on lines in implicit steps, lets go of them and comes again: momentum, energy, and no step without end.
 #include <math.h>
 
 #include "tests/support/implicit_world.h"
@@ -25,6 +25,28 @@ static brunt_world *disk(brunt_integrator integrator, brunt_fill fill, double st
     return world_take(&def);
 }
 
+// It hops, as it begins at once and its rim has corners: what the line has given is what is there, at any time.
+START_TEST(lets_go) {
+    enum { STEPS = 100 };
+    brunt_world *world = disk(BRUNT_NEWMARK, _i % 2 ? BRUNT_FILL_RINGS : BRUNT_FILL_REGULAR, 2e-3 * (1 + _i / 2), 6);
+    double drift = 0, off = 0;
+    int free = 0, before = 1, hops = 0;
+    for (int k = 0; k < STEPS; k++) {
+        brunt_boundary_surface_report report;
+        world_steps(world, 1);
+        brunt_boundary_surface_read(world, 0, &report);
+        drift = fmax(drift, world_momentum(world).linear_drift);
+        off = fmax(off, fabs(world_energy(world).error_relative));
+        free += !report.active, hops += before && !report.active, before = report.active;
+    }
+    printf("  case %d: free in %d of %d steps, %d hops; momentum %.1e, energy %.1e\n", _i, free, STEPS, hops, drift,
+           off);
+    ck_assert_double_le(drift, 1e-9);
+    ck_assert_double_le(off, 1e-9);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Where its tractions find no end a shorter step does.
 START_TEST(goes_on) {
     brunt_newton_counts n;
@@ -38,6 +60,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("rolling_on_lines");
+    ADD_LOOP(lets_go, 8);
     ADD_LOOP(goes_on, 4);
     return suite_main(suite);
 }
