@@ -272,6 +272,53 @@ bool brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *
     return passed;
 }
 
+// ------------------------------------------------------------------------------------------ what is far
+
+static void widen(brunt_boundary_bounds *bounds, int a, double at) {
+    if (at < bounds->low[a]) bounds->low[a] = at;
+    if (at > bounds->high[a]) bounds->high[a] = at;
+}
+
+// A row of F is no longer than F, and its components sum to no more than sqrt(dim) of it.
+void brunt_boundary_body_bounds(brunt_body *body, double dt, const double *moved, brunt_boundary_bounds *bounds) {
+    brunt_particles *p = &body->particles;
+    const int dim = p->dim;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *v = brunt_field(p, BRUNT_FIELD_velocity),
+                *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+    double stretch = 0, largest = 0;
+    *bounds = (brunt_boundary_bounds){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, dim};
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        const brunt_block *block = &body->grid.blocks[b];
+        for (int64_t s = block->first; s < block->first + block->count; s++) {
+            double square = 0;
+            for (int r = 0; r < dim; r++) {
+                const double at = (double)x[r][s], goes = moved ? moved[s * dim + r] : (double)v[r][s] * dt;
+                widen(bounds, r, at), widen(bounds, r, at + goes);
+                for (int c = 0; c < dim; c++) {
+                    const double f = (double)F[r * p->point_dim + c][s];
+                    square += f * f;
+                }
+            }
+            if (square > stretch) stretch = square;
+            if ((double)volume[s] > largest) largest = (double)volume[s];
+        }
+    }
+    bounds->extent = pow(largest, 1.0 / dim) * (0.5 * (1 + 2 * MARGIN) * sqrt(dim * stretch) + BEHIND);
+}
+
+bool brunt_boundary_surface_far(const brunt_boundary_surface *s, const brunt_boundary_bounds *bounds,
+                                const brunt_boundary_extent *extent) {
+    const brunt_boundary_turned *turned = s->turned.particle ? &s->turned : NULL;
+    const double *low = turned ? turned->low : s->low, *high = turned ? turned->high : s->high,
+                 beside = bounds->extent + s->cell + (turned ? 2 * turned->farthest : 0);
+    for (int a = 0; a < bounds->dim; a++)
+        if (bounds->low[a] - extent->way[a] - fmax(0, extent->step[a]) > high[a] + beside ||
+            bounds->high[a] - extent->way[a] - fmin(0, extent->step[a]) < low[a] - beside)
+            return true;
+    return false;
+}
+
 // Whether q is the other side of the wall behind p; how far away.
 static bool is_back(const brunt_boundary_surface *s, const brunt_boundary_particle *p, const brunt_boundary_particle *q,
                     double *away) {

@@ -152,6 +152,13 @@ void brunt_boundary_surface_met(const brunt_contact_context *m, brunt_boundary *
                                 const brunt_constraint_set *set);
 
 // --- boundary_extent.c
+// Where a body is within a step.
+typedef struct brunt_boundary_bounds {
+    double low[3], high[3]; // [m] of its points, at the start of the step and at its end
+    double extent;          // [m] how far from there its points may meet something, at most
+    int dim;
+} brunt_boundary_bounds;
+
 // When a body is looked at: how far the surface has gone, and how far it goes over the step [m], which takes dt [s]; of
 // what turns 0, that is in `turned`.
 typedef struct brunt_boundary_extent {
@@ -165,6 +172,10 @@ typedef struct brunt_boundary_extent {
 // within the step, by a way that is given, and ends where it is not pushed out any more.
 bool brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_body *body,
                                    const brunt_boundary_extent *extent, double *gap);
+// `moved` as above. Surfaces that are far from a body's bounds need not look at it.
+void brunt_boundary_body_bounds(brunt_body *body, double dt, const double *moved, brunt_boundary_bounds *bounds);
+bool brunt_boundary_surface_far(const brunt_boundary_surface *surface, const brunt_boundary_bounds *bounds,
+                                const brunt_boundary_extent *extent);
 // Finds how far behind the particles of a surface that lets go its other side is, if it is within a cell.
 void brunt_boundary_surface_backs(brunt_boundary_surface *surface);
 // Before the first step: whether a body that a surface lets go is behind it, where nothing could hold it, or on both of

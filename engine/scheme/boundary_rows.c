@@ -166,6 +166,7 @@ static void look_at_body(brunt_boundary_rows *rows, brunt_boundary_surface *s, i
     for (int other = i; other < rows->bodies->mpm_count; other++) {
         brunt_body *body = &rows->bodies->mpm[other];
         if (rows->unknowns->tie[other] != i || !brunt_boundary_surface_acts(s, body)) continue;
+        if (brunt_boundary_surface_far(s, &rows->bounds[other], extent)) continue;
         extent->frame = rows->surfaces->frame[other];
         extent->moved = b->ways ? b->ways(b->context, other) : NULL;
         if (brunt_boundary_surface_extent(s, body, extent, rows->here)) rows->passed = s;
@@ -201,6 +202,13 @@ static int reserve_arrays(brunt_boundary_rows *rows, brunt_error *error) {
                           error);
 }
 
+// Where bodies are within the step.
+static void take_bounds(brunt_boundary_rows *rows, const build *b) {
+    for (int i = 0; i < rows->bodies->mpm_count; i++)
+        brunt_boundary_body_bounds(&rows->bodies->mpm[i], rows->dt, b->ways ? b->ways(b->context, i) : NULL,
+                                   &rows->bounds[i]);
+}
+
 static int reserve_gaps(brunt_boundary_rows *rows, brunt_error *error) {
     size_t count = 1;
     rows->any_leave = false;
@@ -209,7 +217,10 @@ static int reserve_gaps(brunt_boundary_rows *rows, brunt_error *error) {
         rows->any_leave = rows->any_leave || s->def.condition == BRUNT_SEPARATE;
         count += (size_t)s->particle_count * (size_t)rows->bodies->mpm_count;
     }
-    return BRUNT_CAPACITY(rows->gap, count, 0, "particles of boundaries", error);
+    return BRUNT_CAPACITY(rows->gap, count, 0, "particles of boundaries", error) ||
+                   BRUNT_CAPACITY(rows->bounds, (size_t)rows->bodies->mpm_count + 1, 0, "bodies of points", error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 // How the surface goes within the step.
@@ -227,6 +238,7 @@ static void take_way(brunt_boundary_surface *s, double now, double dt, brunt_bou
 static int go_round(brunt_boundary_rows *rows, const build *b, brunt_error *error) {
     const double now = b->world->clock.time;
     rows->here = rows->gap, rows->reached = 0, rows->passed = rows->too_far = NULL;
+    if (b->looks) take_bounds(rows, b);
     if (b->adds) rows->patch_count = 0, rows->version++, rows->unseen = NULL, rows->first[0] = 0;
     for (int k = 0; k < rows->surfaces->count; k++) {
         brunt_boundary_surface *s = &rows->surfaces->surface[k];
@@ -272,12 +284,13 @@ int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brun
 }
 
 void brunt_boundary_rows_free(brunt_boundary_rows *rows) {
-    void *const all[] = {rows->patch, rows->first, rows->node, rows->weight, rows->mark, rows->gap, rows->dense};
+    void *const all[] = {rows->patch, rows->first, rows->node,   rows->weight,
+                         rows->mark,  rows->gap,   rows->bounds, rows->dense};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *rows = (brunt_boundary_rows){.patch_count = 0};
 }
 
 size_t brunt_boundary_rows_bytes(const brunt_boundary_rows *rows) {
     return rows->patch_capacity + rows->first_capacity + rows->node_capacity + rows->weight_capacity +
-           rows->mark_capacity + rows->gap_capacity + rows->dense_capacity;
+           rows->mark_capacity + rows->gap_capacity + rows->bounds_capacity + rows->dense_capacity;
 }

@@ -38,6 +38,7 @@ typedef struct brunt_boundary_rows {
     int32_t *mark; // of each unknown: its place in the patch under way + 1
     double *gap;   // [m] how far boundary particles are from what reaches them: of each surface and body
     double *here;  // those of the surface and body under way
+    brunt_boundary_bounds *bounds; // of each body of points
     double *dense;
     double cell, dt; // [m], [s]
     bool still;      // load steps: no inertia
@@ -48,7 +49,8 @@ typedef struct brunt_boundary_rows {
     const brunt_boundary_surface *too_far; // turns by too much within the step
     int64_t sweeps;                        // of the run
     int swept;                             // in the iteration under way
-    size_t patch_capacity, first_capacity, node_capacity, weight_capacity, mark_capacity, gap_capacity, dense_capacity;
+    size_t patch_capacity, first_capacity, node_capacity, weight_capacity, mark_capacity, gap_capacity, bounds_capacity,
+        dense_capacity;
 } brunt_boundary_rows;
 
 extern const brunt_term_ops brunt_boundary_rows_ops;
