@@ -31,6 +31,7 @@ typedef struct point_set {
     double *gradient, *volume; // of particles, for their size; nodes have none
     bool axisymmetric;         // about the axis x = 0, as long as they are there
     double *integrity;         // of particles that may fail and stay; else NULL
+    double *change;            // J of rings whose field is averaged, by the volume that each had; else NULL
     int components;
 } point_set;
 

@@ -7,9 +7,8 @@
 #include "base/error.h"
 
 static double reduce_field(const brunt_measure *m, const point_set *set) {
-    double axis[3], least = INFINITY, most = -INFINITY, sum = 0;
+    double axis[3], least = INFINITY, most = -INFINITY, sum = 0, all = 0;
     bool sliced = measure_unit_axis(m, axis);
-    int64_t count = 0;
     for (int64_t p = 0; p < set->count; p++) {
         double along = 0;
         for (int c = 0; c < 3; c++) along += (set->position[3 * p + c] - m->center[c]) * axis[c];
@@ -19,15 +18,16 @@ static double reduce_field(const brunt_measure *m, const point_set *set) {
         if (isnan(value)) continue;
         least = fmin(least, value);
         most = fmax(most, value);
-        sum += value;
-        count++;
+        const double weight = set->change ? set->volume[p] / set->change[p] : 1;
+        sum += weight * value;
+        all += weight;
     }
-    if (!count) return NAN;
+    if (!(all > 0)) return NAN;
     switch (m->take) {
     case BRUNT_TAKE_MIN: return least;
     case BRUNT_TAKE_MAX: return most;
     case BRUNT_TAKE_MAX_ABS: return fmax(fabs(least), fabs(most));
-    case BRUNT_TAKE_MEAN: return sum / (double)count;
+    case BRUNT_TAKE_MEAN: return sum / all;
     default: return NAN; // `check` refuses the rest
     }
 }

@@ -254,7 +254,7 @@ static const scene_key own_rows[] = {
 
     {"measures", SCENE_NAMED, NULL, OPTIONAL, NONE, "results by name, judged where a value is expected"},
     SCENE_OF_KINDS("measures.*"),
-    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time; lines without a value, as the gap of what is near nothing, do not count, but for end and initial (period: mean time between rises through the middle of its range; rise: time at which it first passes half of its greatest value), a field over the body (min max mean max_abs)"},
+    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time; lines without a value, as the gap of what is near nothing, do not count, but for end and initial (period: mean time between rises through the middle of its range; rise: time at which it first passes half of its greatest value), a field over the body (min max mean max_abs; mean: of material points that are rings each by its volume at the start)"},
     {"measures.*.at", SCENE_WORD, NULL, OPTIONAL, ANY, SIGNALS, 0, false, "another name for take"},
     {"measures.*.curve", SCENE_CURVE, "any", OPTIONAL, NONE, "reference over time for the history, [[0 s, 0 m], [1 s, 2 m]], linear between: what is reduced (take: max_abs by default, max, min, mean, initial or end) is history less curve, after minus and relative_to, over the curve's range of values, from its first to its last time"},
     {"measures.*.from", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "of the history only from then ..."},

@@ -411,6 +411,29 @@ START_TEST(extent_of_rings) {
 }
 END_TEST
 
+// Rings at r = 0.025, 0.075 .. 0.475 count by their circumference, however they have swollen since.
+START_TEST(mean_of_rings) {
+    const char *sets[] = {"axisymmetric=true"};
+    brunt_scene rings;
+    small_scene(&rings, sets, 1);
+    brunt_world *other = small_world(&rings);
+    brunt_measure m = blank(BRUNT_MEASURE_FIELD);
+    double value;
+    strcpy(m.field, "position");
+    m.take = BRUNT_TAKE_MEAN, m.component = 0;
+    for (int k = 0; k < 2; k++) {
+        if (k) set_left(other, "deformation_gradient", 9, 4, 2);
+        ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+        ck_assert_double_eq_tol(value, 0.83125 / 2.5, 10 * rounding);
+    }
+    m.take = BRUNT_TAKE_MAX;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.475, 10 * rounding);
+    brunt_world_destroy(other);
+    brunt_scene_free(&rings);
+}
+END_TEST
+
 START_TEST(radius_about_an_axis) {
     // Left block: [0, 0.5] x [0.1, 0.6] with particles every 0.05; along y the farthest surface from the line y = 0.1
     // is 0.5 away.
@@ -742,6 +765,7 @@ int main(void) {
     tcase_add_test(values, extent_of_a_turned_block);
     tcase_add_test(values, extent_of_what_has_failed);
     tcase_add_test(values, extent_of_rings);
+    tcase_add_test(values, mean_of_rings);
     tcase_add_test(values, radius_about_an_axis);
     tcase_add_test(values, twist_is_the_turn);
     tcase_add_test(values, fields_are_reduced);
