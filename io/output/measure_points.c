@@ -32,7 +32,7 @@ void measure_free_points(point_set *set) {
 }
 
 // Rings are as large as their circumference: a mean counts each by its material, as one over equal cells does.
-static int read_rings(const brunt_measure *m, brunt_world *world, int32_t body, point_set *set, brunt_error *error) {
+static int read_weights(const brunt_measure *m, brunt_world *world, int32_t body, point_set *set, brunt_error *error) {
     brunt_field_info unused;
     if (read_field(world, body, "volume", m, &set->volume, &unused, error)) return BRUNT_FAILED;
     return read_field(world, body, "J", m, &set->change, &unused, error);
@@ -63,8 +63,8 @@ int measure_read_points(const brunt_measure *m, brunt_world *world, int32_t body
                             m->name, m->field, brunt_body_name(world, body));
     if (!status && (sized || m->kind == BRUNT_MEASURE_PROFILE))
         status = read_field(world, body, "volume", m, &set->volume, &unused, error);
-    const bool rings = set->axisymmetric && m->kind == BRUNT_MEASURE_FIELD && m->take == BRUNT_TAKE_MEAN;
-    if (!status && rings && info.at == BRUNT_AT_PARTICLES) status = read_rings(m, world, body, set, error);
+    const bool weighed = set->axisymmetric && m->kind == BRUNT_MEASURE_FIELD && m->take == BRUNT_TAKE_MEAN;
+    if (!status && weighed && info.at == BRUNT_AT_PARTICLES) status = read_weights(m, world, body, set, error);
     set->count = brunt_body_size(world, body, info.at);
     if (!status) status = brunt_positions_read(world, body, info.at, &set->position, error);
     if (status) measure_free_points(set);

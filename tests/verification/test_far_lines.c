@@ -18,10 +18,9 @@ static brunt_world_def block(brunt_condition condition, double step) {
     return def;
 }
 
-// What the step brings near is not far, whoever
-// goes.
+// What the step brings near is not far, whichever of both goes.
 START_TEST(far) {
-    enum { NOBODY, LINE, BODY }; // who goes
+    enum { NEITHER, LINE, BODY }; // which of them goes
     const int goes = _i / 2 % 3;
     const double way = 0.7, gap = _i % 2 ? 0.9 : 0.6, up = _i < 6 ? 1 : -1, at = _i < 6 ? 0.62 + gap : 0.02 - gap;
     brunt_world_def def = block(BRUNT_SEPARATE, 1);
@@ -34,7 +33,7 @@ START_TEST(far) {
     brunt_boundary_bounds bounds;
     brunt_boundary_body_bounds(&world->bodies.mpm[0], 1, NULL, &bounds);
     if (goes == LINE) extent.step[1] = -way * up;
-    ck_assert(brunt_boundary_surface_far(s, &bounds, &extent) == (goes == NOBODY || gap > way + 0.1));
+    ck_assert(brunt_boundary_surface_far(s, &bounds, &extent) == (goes == NEITHER || gap > way + 0.1));
     extent.way[1] = -gap * up; // the line is there by now
     ck_assert(!brunt_boundary_surface_far(s, &bounds, &extent));
     brunt_world_destroy(world);
