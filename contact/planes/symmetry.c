@@ -155,12 +155,13 @@ static int add_images(const brunt_symmetry_plane *symmetry_plane, int near, int3
         if (abs(to[axis] - image[k][axis]) > 2 * near) continue;
         int found = 0;
         while (found < count && memcmp(image[found], to, sizeof to) != 0) found++;
-        if (found == k)
-            for (int i = 0; i < count; i++) sign[i][axis] = 0;
+        for (int a = 0; found == k && a < 3; a++)
+            for (int i = 0; i < count && (a == axis || symmetry_plane->sticks); i++) sign[i][a] = 0;
         if (found < count) continue;
         memcpy(image[count], to, sizeof to);
         memcpy(sign[count], sign[k], sizeof sign[k]);
-        sign[count++][axis] *= -1;
+        for (int a = 0; a < 3; a++) sign[count][a] *= a == axis || symmetry_plane->sticks ? -1 : 1;
+        count++;
     }
     return count;
 }

@@ -4,10 +4,12 @@
 #include "contact/constraint/impulse_account.h"
 #include "mpm/mpm_body.h"
 
-// A symmetry plane through grid nodes `node` along `axis`: symmetry, and slip planes that lie on a grid line.
+// A symmetry plane through grid nodes `node` along `axis`: symmetry, and slip planes that lie on a grid line; in
+// implicit steps such ones that stick, which splines keep at rest where the images of all velocities are opposite.
 typedef struct brunt_symmetry_plane {
     int axis;
     int32_t node;
+    bool sticks;  // implicit steps: no velocity, but opposite ones of images, not only across it
     int boundary; // -1: the axis of revolution of rings, which is there for every body and gives no impulse
 } brunt_symmetry_plane;
 

@@ -107,13 +107,15 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
         REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line "
                "(cell %g m)",
                index, boundary->name, def->cell);
-    if (on_line && row->symmetry) {
+    // Nodes of splines that hold on a line of the grid would hold half a cell before it; images hold what is there.
+    const bool odd = on_line && row->sticks && def->kernel == BRUNT_QUADRATIC && brunt_scheme_minimises(def->scheme);
+    if (on_line && (row->symmetry || odd)) {
         if (all->symmetry_count == (int)(sizeof all->symmetry / sizeof all->symmetry[0]))
-            REFUSE("boundaries: more than 16 symmetry and slip planes");
+            REFUSE("boundaries: more than 16 planes of symmetry or on lines of the grid");
         for (int k = 0; k < all->symmetry_count; k++) {
             const brunt_symmetry_plane *other = &all->symmetry[k];
             int32_t apart = (int32_t)round(at) - other->node;
-            if (other->boundary >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
+            if (!odd && other->boundary >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
                 brunt_boundary_has_fluid(def))
                 brunt_warn(
                     m->messages,
@@ -123,7 +125,7 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
         }
         boundary->symmetry_plane = all->symmetry_count;
         all->symmetry[all->symmetry_count++] =
-            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .boundary = index};
+            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .sticks = odd, .boundary = index};
         return BRUNT_OK;
     }
     // On a line of the grid nodes hold; elsewhere those behind it would, as much as a cell away.

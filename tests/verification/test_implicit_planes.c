@@ -153,7 +153,57 @@ START_TEST(pushes) {
 }
 END_TEST
 
-// On a line of the grid, or by conjugate gradients, nodes hold as ever.
+// On a line of the grid a plane holds as well, from either side: in load steps, in implicit ones, in the plane and in
+// space. Nodes at and behind it held half a cell before it.
+START_TEST(hangs_on_a_line) {
+    const int dim = 2 + _i % 2;
+    const double side = _i / 2 % 2 ? -1 : 1;
+    brunt_world_def def = begin(dim, _i < 4, _i < 4 ? 1 : 1e5);
+    brunt_body_def *b = def_box(&def, "block", XYZ(side > 0 ? 0 : -1, 0, 0), XYZ(side > 0 ? 1 : 0, 0.4, 0.2));
+    b->particles_per_cell = dim == 2 ? 16 : 8;
+    def_plane(&def, XYZ(0, 0, 0), XYZ(side, 0, 0), BRUNT_STICK, 0);
+    def.gravity[0] = 10 * side;
+    if (_i >= 4) def.newton.tolerance = 1e-13;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, 1);
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
+    const double way = side * (after.centre[0] - before.centre[0]), exact = DENSITY * 10 / 3 / YOUNG,
+                 weight = after.mass * 10;
+    printf("  %dD, side %+g: way off by %+.1e, force %+.1e\n", dim, side, way / exact - 1,
+           -side * f.force[0] / weight - 1);
+    ck_assert_double_le(fabs(way / exact - 1), 7e-3); // by linear theory
+    ck_assert_double_le(fabs(side * f.force[0] / weight + 1), 1e-8);
+    for (int a = 1; a < 3; a++) ck_assert_double_le(fabs(f.force[a]), 1e-8 * weight);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block that sticks to a floor and slips on a wall, both on lines of the grid: the floor carries what is along it,
+// but for what the wall presses.
+START_TEST(in_a_corner) {
+    brunt_world_def def = begin(2, 1, 1);
+    def_box(&def, "block", XYZ(0, 0, 0), XYZ(0.4, 0.4, 0));
+    def_plane(&def, XYZ(0, 0, 0), XYZ(1, 0, 0), BRUNT_SLIP, 0);
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_STICK, 0);
+    def.gravity[0] = _i ? 1 : 0, def.gravity[1] = -1;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    const brunt_reaction wall = world_boundary(world, 0), floor = world_boundary(world, 1);
+    const double weight = world_sums(world, 0).mass;
+    printf("  wall %.3g %.3g, floor %.3g %.3g of the weight\n", wall.force[0] / weight, wall.force[1] / weight,
+           floor.force[0] / weight, floor.force[1] / weight);
+    ck_assert_double_le(fabs(wall.force[1]), 1e-8 * weight);
+    ck_assert_double_le(fabs(floor.force[1] / weight - 1), 1e-8);
+    ck_assert_double_le(fabs((wall.force[0] + floor.force[0]) / weight + _i), 1e-8);
+    if (!_i) ck_assert_double_le(fabs(wall.force[0]), 1e-2 * weight);
+    if (_i) ck_assert(wall.force[0] < -0.1 * weight && floor.force[0] < -0.1 * weight);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// On a line of the grid there are no pieces, nor by conjugate gradients, whose nodes hold as ever.
 START_TEST(on_lines) {
     brunt_world_def def = begin(2, 0, 0.01);
     def_box(&def, "block", XYZ(0, 0, 0), XYZ(0.4, 0.4, 0));
@@ -226,6 +276,8 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("implicit_planes");
     ADD_LOOP(hangs, 6);
+    ADD_LOOP(hangs_on_a_line, 8);
+    ADD_LOOP(in_a_corner, 2);
     ADD_LOOP(slides, 3);
     ADD_LOOP(carries, 1);
     ADD_LOOP(pushes, 2);
