@@ -30,9 +30,9 @@ static int symmetry_of(const brunt_unknowns *u, const brunt_world *world, int i,
     return count;
 }
 
-// Whether a plane holds an axis of what is near to it: across it, or all of one that sticks.
-static bool takes(const brunt_symmetry_plane *plane, const int32_t at[3], int axis) {
-    return plane->axis == axis || (plane->sticks && abs(plane->node - at[plane->axis]) <= LAYERS);
+// Whether a plane that sticks is near to a node.
+static bool sticks_to(const brunt_symmetry_plane *plane, const int32_t at[3]) {
+    return plane->sticks && abs(plane->node - at[plane->axis]) <= LAYERS;
 }
 
 // The boundary that takes what acts along an axis of a node: one that sticks there, else the nearest symmetry plane
@@ -40,7 +40,7 @@ static bool takes(const brunt_symmetry_plane *plane, const int32_t at[3], int ax
 static int32_t bearer(const brunt_symmetry_plane *symmetry, int count, const int32_t at[3], int axis) {
     int nearest = 0;
     for (int m = 0; m < count; m++)
-        if (symmetry[m].sticks && takes(&symmetry[m], at, axis)) return symmetry[m].boundary + 1;
+        if (sticks_to(&symmetry[m], at)) return symmetry[m].boundary + 1;
     for (int m = 1; m < count; m++) {
         const bool across = symmetry[m].axis == axis;
         if (across && (symmetry[nearest].axis != axis ||

@@ -203,6 +203,21 @@ START_TEST(in_a_corner) {
 }
 END_TEST
 
+// Between a plane that sticks and one that slips, both across the load, each carries half of it.
+START_TEST(between) {
+    brunt_world_def def = begin(2, 1, 1);
+    def_box(&def, "block", XYZ(0, 0, 0), XYZ(1, 0.4, 0));
+    def_plane(&def, XYZ(0, 0, 0), XYZ(1, 0, 0), BRUNT_STICK, 0);
+    def_plane(&def, XYZ(1, 0, 0), XYZ(-1, 0, 0), BRUNT_SLIP, 0);
+    def.gravity[0] = 1;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    const double weight = world_sums(world, 0).mass;
+    for (int w = 0; w < 2; w++) ck_assert_double_le(fabs(world_boundary(world, w).force[0] / weight + 0.5), 1e-2);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // On a line of the grid there are no pieces, nor by conjugate gradients, whose nodes hold as ever.
 START_TEST(on_lines) {
     brunt_world_def def = begin(2, 0, 0.01);
@@ -278,6 +293,7 @@ int main(void) {
     ADD_LOOP(hangs, 6);
     ADD_LOOP(hangs_on_a_line, 8);
     ADD_LOOP(in_a_corner, 2);
+    ADD_LOOP(between, 1);
     ADD_LOOP(slides, 3);
     ADD_LOOP(carries, 1);
     ADD_LOOP(pushes, 2);
