@@ -18,7 +18,7 @@ static void sets_free(barrier_sets *s) { brunt_free(s->first), brunt_free(s->nod
 
 void brunt_barrier_free(brunt_barrier *b) {
     if (!b) return;
-    brunt_free(b->facet), brunt_free(b->body), brunt_free(b->edge), brunt_free(b->vertex_area);
+    brunt_free(b->facet), brunt_free(b->turned), brunt_free(b->body), brunt_free(b->edge), brunt_free(b->vertex_area);
     brunt_free(b->edge_area), brunt_free(b->edge_length2), brunt_free(b->pair), brunt_free(b->key);
     brunt_free(b->point_box), brunt_free(b->facet_box), brunt_free(b->edge_box);
     brunt_free(b->far), brunt_free(b->asked);
@@ -62,7 +62,8 @@ static bool from_first(const double (*x)[3], const int32_t q[4]) {
 }
 
 static void take_facet(brunt_barrier *b, const int32_t corners[3]) {
-    int32_t *f = b->facet[b->facet_count++];
+    int32_t *f = b->facet[b->facet_count];
+    b->turned[b->facet_count++] = corners[1] < corners[0];
     f[0] = corners[0], f[1] = corners[1], f[2] = b->dim == 3 ? corners[2] : -1;
     sort_three(f, b->dim);
 }
@@ -149,6 +150,7 @@ int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, bru
     b->dim = mesh->dim, b->vertex_count = mesh->vertex_count, b->edge_count = 0;
     const size_t vertices = (size_t)mesh->vertex_count + 1;
     if (BRUNT_CAPACITY(b->facet, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
+        BRUNT_CAPACITY(b->turned, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
         BRUNT_CAPACITY(b->body, vertices, 0, "vertices of surfaces", error) ||
         BRUNT_CAPACITY(b->vertex_area, vertices, 0, "vertices of surfaces", error))
         return BRUNT_FAILED;

@@ -25,8 +25,9 @@ typedef struct brunt_barrier_mesh {
     int32_t vertex_count, facet_count;
     const double (*rest)[3]; // [m] of vertices in the reference configuration: areas and lengths of edges are from it
     const int32_t *body;     // of vertices
-    // Vertices: 2, -1, -1 (2D); 3, -1; or 4: a quadrilateral is the two triangles about its shorter diagonal in the
-    // reference configuration (the one with the smallest vertex where both are as long).
+    // Vertices: 2, -1, -1 (2D: the body is to the left of the way from the first to the second); 3, -1; or 4: a
+    // quadrilateral is the two triangles about its shorter diagonal in the reference configuration (the one with the
+    // smallest vertex where both are as long).
     const int32_t (*facet)[4];
 } brunt_barrier_mesh;
 
@@ -43,6 +44,7 @@ typedef struct brunt_barrier_pair {
     // edges at edges (3D). Of a pair (a, a) the first and third. brunt_barrier_shares has the usual ones.
     double share[3];
     brunt_gap_energy *energy; // NULL: brunt_barrier_at
+    double reach;             // [m] 0: gaps stay above 0; else (2D) surfaces may overlap, by less than that
 } brunt_barrier_pair;
 
 // Both meshes: 1/2, 1/2, 1/2 (edges add where points are not); b a body of material points: 0, 1, 0; a: 1, 0, 0.
@@ -55,7 +57,7 @@ typedef bool brunt_barrier_pair_between(const void *self, int32_t a, int32_t b, 
 typedef struct brunt_barrier_pair_source {
     brunt_barrier_pair_between *between;
     const void *self;
-    double range;  // [m] at least distance + offset of all pairs
+    double range;  // [m] at least distance + offset of all pairs, and 2 reach + offset
     bool friction; // some pair may have it
 } brunt_barrier_pair_source;
 
@@ -67,6 +69,7 @@ typedef struct brunt_barrier_plane {
     const double *offset;        // [m] of each body, as of a pair; NULL: none
     double distance, stiffness, friction, slip_speed; // as of a pair; friction 0: slips, INFINITY: sticks
     brunt_gap_energy *energy;                         // as of a pair
+    double reach;                                     // as of a pair
 } brunt_barrier_plane;
 
 // Material points of all bodies. Nodes that count for point i, with weights: node[first[i]] .. node[first[i + 1] - 1],
@@ -165,11 +168,12 @@ typedef struct brunt_barrier_stiffest {
 
 typedef struct brunt_barrier_report {
     double least_gap;    // [m] of all that is near; INFINITY: nothing is
-    double least_part;   // of its distance dhat
+    double least_part;   // of its distance dhat; of what may overlap, of its reach: 1 where it begins to push
     int32_t body, other; // that are that near; other -1: a plane
     int32_t point;       // vertex (below vertex_count) or material point (vertex_count and on); -1: two edges
     int32_t plane;       // -1: none
     double position[3];  // [m] of the point, or on the edge
+    bool overlaps;       // what is that near may overlap
     int64_t contacts;    // places with a force
     double energy;       // [J] in the barrier
     brunt_barrier_stiffest stiffest;

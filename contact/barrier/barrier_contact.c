@@ -34,6 +34,7 @@ static double weighted(const brunt_barrier *b, const barrier_contact *c, brunt_b
     const barrier_law law = barrier_law_of(b, c->law);
     double unused, g[6], second[36];
     *v = law.energy(c->at.d - c->offset, law.distance, law.stiffness);
+    if (barrier_is_lost(&law, c->at.d - c->offset)) v->b = INFINITY;
     return c->threshold == 0 ? c->weight
                              : c->weight * mollify(brunt_edge_cross(c->edge[0], c->edge[1], g, second), c->threshold,
                                                    &unused, &unused);

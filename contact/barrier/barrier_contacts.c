@@ -41,9 +41,10 @@ static void count_shared(const brunt_barrier *b, barrier_workspace *r, const int
         for (int i = 0; i < 3; i++) shared_at(r->edge, &r->edge_count, f[i == 2], f[i == 0 ? 1 : 2], of)->facets++;
 }
 
+// From inside, what may overlap is seen a way further than it may be deep.
 static bool in_range(const brunt_barrier *b, int32_t law, double d) {
     const brunt_barrier_pair *pair = barrier_pair_of(b, law);
-    return d - pair->offset < pair->distance;
+    return d - pair->offset < fmax(pair->distance, 2 * pair->reach);
 }
 
 // The facets within reach, each at its nearest feature.
@@ -62,6 +63,7 @@ static void count_facets(const brunt_barrier *b, int32_t point, const double *u,
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
         if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);
+        of.facet = b->facets.item[i];
         vertices_of(f, region, v);
         feature_at(r, v, &of)->times++;
         count_shared(b, r, f, &of);
@@ -104,7 +106,7 @@ static void take_back_vertices(const brunt_barrier *b, int32_t point, const doub
     }
 }
 
-static barrier_contact contact_of(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u) {
+barrier_contact barrier_contact_with(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u) {
     static const double here[3] = {0};
     barrier_contact c = {.place = {point, f->vertex[0], f->vertex[1], f->vertex[2]}, .law = f->law, .side = f->side};
     c.offset = barrier_pair_of(b, f->law)->offset;
@@ -118,6 +120,7 @@ static barrier_contact contact_of(const brunt_barrier *b, int32_t point, const b
         brunt_closest_line(here, x[0], x[1], &c.at);
     else
         brunt_closest_plane(here, (const double(*)[3])x, &c.at);
+    if (barrier_pair_of(b, f->law)->reach > 0) barrier_sign(b, point, f, u, &c.at);
     c.weight = f->times * f->share * barrier_area_of(b, point);
     return c;
 }
@@ -170,9 +173,10 @@ void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u,
     count_facets(b, point, u, r);
     if (b->dim == 3) take_back_edges(b, point, u, r);
     take_back_vertices(b, point, u, r);
+    barrier_settle_overlaps(b, point, u, r);
     for (int64_t i = 0; i < r->feature_count; i++) {
         if (r->feature[i].times == 0) continue;
-        const barrier_contact c = contact_of(b, point, &r->feature[i], u);
+        const barrier_contact c = barrier_contact_with(b, point, &r->feature[i], u);
         take(context, &c);
     }
     plane_contacts(b, point, u, take, context);

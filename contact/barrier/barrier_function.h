@@ -11,6 +11,10 @@
 double brunt_barrier_default_distance(double smallest_spacing);
 double brunt_barrier_default_stiffness(double young_a, double young_b);
 
+// [Pa/m] The stiffness by which surfaces that may overlap push each other, for contacts of half the length a [m]: a
+// twentieth of what the bodies give, E* / a. E* by their moduli E / (1 - nu^2).
+double brunt_penalty_default_stiffness(double modulus_a, double modulus_b, double a);
+
 // [s] The longest step by which Newmark's rule follows contact of stiffness `ddb` [Pa/m], b'' at its gap, over `area`
 // [m^2] on a mass [kg]: dt^2 area ddb = 4 m. By longer ones gaps chatter; backward Euler damps them.
 double brunt_barrier_longest_step(double area, double ddb, double mass);

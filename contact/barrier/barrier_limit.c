@@ -17,6 +17,7 @@ typedef struct moving_pair {
     int first, count;        // places of the first feature; of both
     double rounding;         // [m]
     double distance, offset; // [m] dhat; what of the distance is no gap
+    double reach;            // [m] as of a pair
 } moving_pair;
 
 typedef struct limit_work {
@@ -86,8 +87,21 @@ static double part_of(const moving_pair *m, double t, double left, const double 
     return part;
 }
 
+// The greatest way of the first feature along the other.
+static double way_of(const moving_pair *m) {
+    double most = 0;
+    for (int i = 0; i < m->first; i++)
+        for (int j = m->first; j < m->count; j++) {
+            double square = 0;
+            for (int k = 0; k < 3; k++) square += (m->v[i][k] - m->v[j][k]) * (m->v[i][k] - m->v[j][k]);
+            most = fmax(most, square);
+        }
+    return sqrt(most);
+}
+
 static double pair_limit(const moving_pair *m, double largest) {
     double n[3], t = 0, d = distance_at(m, 0, n);
+    if (m->reach > 0) return barrier_overlap_limit(d - m->offset, m->reach, way_of(m), largest);
     const double left = LEFT * fmin(d - m->offset, m->distance);
     for (int i = 0; i < PARTS; i++) {
         const double part = part_of(m, t, left + m->offset, n);
@@ -107,12 +121,15 @@ static double plane_limit(const limit_work *w, int32_t point, int32_t k, double 
     const double offset = barrier_plane_offset(w->b, plane, point);
     double gap = -offset;
     for (int j = 0; j < 3; j++) gap -= plane->normal[j] * m.x[1][j];
-    const double part = part_of(&m, 0, LEFT * fmin(gap, plane->distance) + offset, plane->normal);
+    double left = LEFT * fmin(gap, plane->distance) + offset;
+    if (plane->reach > 0) left = fmin(gap, 0) - plane->reach / 2 + offset;
+    const double part = part_of(&m, 0, left, plane->normal);
     return fmin(part, largest);
 }
 
 static void apart(const brunt_barrier *b, int32_t law, moving_pair *m) {
-    m->distance = barrier_pair_of(b, law)->distance, m->offset = barrier_pair_of(b, law)->offset;
+    const brunt_barrier_pair *pair = barrier_pair_of(b, law);
+    m->distance = pair->distance, m->offset = pair->offset, m->reach = pair->reach;
 }
 
 static double point_limit(const limit_work *w, int32_t point, double largest) {

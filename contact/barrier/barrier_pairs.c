@@ -72,7 +72,8 @@ static int make_pairs(brunt_barrier *b, brunt_error *error) {
         if (i > known && bodies == b->key[i - 1].bodies) continue;
         brunt_barrier_pair *pair = &b->pair[b->pair_count];
         const bool meet = b->source.between(b->source.self, (int32_t)(bodies >> 32), (int32_t)bodies, pair);
-        BRUNT_ASSERT(meet && pair->distance > 0 && pair->distance + pair->offset <= b->source.range);
+        BRUNT_ASSERT(meet && fmax(pair->distance, 2 * pair->reach) > 0);
+        BRUNT_ASSERT(fmax(pair->distance, 2 * pair->reach) + pair->offset <= b->source.range);
         b->key[b->pair_count] = (barrier_key){bodies, b->pair_count};
         b->pair_count++;
     }
@@ -105,12 +106,12 @@ int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, 
 barrier_law barrier_law_of(const brunt_barrier *b, int32_t law) {
     if (barrier_law_is_plane(b, law)) {
         const brunt_barrier_plane *p = &b->step.planes[law];
-        return (barrier_law){p->distance, p->stiffness, p->friction, p->slip_speed,
-                             p->energy ? p->energy : brunt_barrier_at};
+        return (barrier_law){p->distance,   p->stiffness, p->friction,
+                             p->slip_speed, p->reach,     p->energy ? p->energy : brunt_barrier_at};
     }
     const brunt_barrier_pair *p = barrier_pair_of(b, law);
-    return (barrier_law){p->distance, p->stiffness, p->friction, p->slip_speed,
-                         p->energy ? p->energy : brunt_barrier_at};
+    return (barrier_law){p->distance,   p->stiffness, p->friction,
+                         p->slip_speed, p->reach,     p->energy ? p->energy : brunt_barrier_at};
 }
 
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges) {

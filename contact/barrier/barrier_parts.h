@@ -19,7 +19,7 @@ enum { BARRIER_DOFS = 3 * BRUNT_CLOSEST_PLACES, BARRIER_GRAIN = 64, BARRIER_TASK
 
 // Of a pair or plane: what a contact needs to know.
 typedef struct barrier_law {
-    double distance, stiffness, friction, slip_speed;
+    double distance, stiffness, friction, slip_speed, reach;
     brunt_gap_energy *energy;
 } barrier_law;
 
@@ -65,6 +65,8 @@ typedef struct barrier_feature {
     int8_t side;
     double share;
     int32_t times; // multiplicity
+    int32_t facet; // where it is the inside of one
+    double gap;    // [m] of what may overlap; else INFINITY
 } barrier_feature;
 
 // What facets that a point is near have in common: edges (b -1: vertices), how many facets (edges) hold them.
@@ -117,8 +119,9 @@ struct brunt_barrier {
     // Surface. Facets are simplices, vertices of each ascending (2D: the third -1).
     int32_t vertex_count, facet_count, edge_count;
     int32_t (*facet)[3], *body, (*edge)[2];
+    bool *turned;                                   // of facets, in two dimensions: they were given the other way round
     double *vertex_area, *edge_area, *edge_length2; // [m^2] (2D [m]), [m^2], [m^2]
-    size_t facet_capacity, body_capacity, edge_capacity, vertex_area_capacity, edge_area_capacity,
+    size_t facet_capacity, turned_capacity, body_capacity, edge_capacity, vertex_area_capacity, edge_area_capacity,
         edge_length2_capacity;
     brunt_barrier_pair_source source;
     // Pairs that were near each other in this step, as they were found, and where each stands, by its bodies.
@@ -205,10 +208,22 @@ int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u,
 typedef void barrier_take(void *context, const barrier_contact *contact);
 void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u, int worker, barrier_take *take,
                           void *context);
+barrier_contact barrier_contact_with(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u);
 // All of them into a list. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list,
                           brunt_error *error);
 brunt_energy_sum barrier_sum_energy(brunt_barrier *b, const brunt_team *team, const double *u);
+
+// --- surfaces that may overlap (barrier_overlap.c)
+// The gap of a contact with a feature gets its sign: inside the other body it is negative, and n points out of it.
+void barrier_sign(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u, brunt_closest *at);
+// Of a point's features that it is within, the nearest alone of each law counts, once, if nothing is nearer that it is
+// before; none that is beyond the distance.
+void barrier_settle_overlaps(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r);
+// How much of a way a pair may go that may overlap: the way of the first place along the others [m].
+double barrier_overlap_limit(double gap, double reach, double way, double largest);
+// Whether a gap is so far below 0 that it is not known which way is out.
+static inline bool barrier_is_lost(const barrier_law *law, double gap) { return law->reach > 0 && gap < -law->reach; }
 
 // --- one contact (barrier_contact.c)
 double barrier_contact_energy(const brunt_barrier *b, const barrier_contact *c);

@@ -27,7 +27,10 @@ static void note_stiffness(const brunt_barrier *b, const double *u, const barrie
 static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
     if (c->weight <= 0 || !(c->at.d - c->offset < r->least_gap)) return;
     const bool plane = barrier_law_is_plane(b, c->law), edges = c->threshold > 0;
-    r->least_gap = c->at.d - c->offset, r->least_part = r->least_gap / barrier_law_of(b, c->law).distance;
+    const barrier_law law = barrier_law_of(b, c->law);
+    r->least_gap = c->at.d - c->offset;
+    r->least_part = law.reach > 0 ? 1 + (r->least_gap - law.distance) / law.reach : r->least_gap / law.distance;
+    r->overlaps = law.reach > 0;
     r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law : -1;
     r->body = barrier_body_of(b, c->place[0]);
     r->other = other_of(b, c);

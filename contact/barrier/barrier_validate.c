@@ -18,9 +18,10 @@ static void validate_surface(const brunt_barrier *b) {
 static void validate_pairs(const brunt_barrier *b) {
     for (int32_t i = 0; i < b->pair_count; i++) {
         const brunt_barrier_pair *p = &b->pair[i];
-        BRUNT_ASSERT(p->a >= 0 && p->a <= p->b && p->distance > 0 && p->stiffness > 0 && p->friction >= 0);
+        BRUNT_ASSERT(p->a >= 0 && p->a <= p->b && p->stiffness > 0 && p->friction >= 0);
+        BRUNT_ASSERT(p->distance >= 0 && p->reach >= 0 && p->distance + p->reach > 0);
         BRUNT_ASSERT(p->friction == 0 || (b->source.friction && p->slip_speed > 0));
-        BRUNT_ASSERT(p->distance + p->offset <= b->source.range);
+        BRUNT_ASSERT(fmax(p->distance, 2 * p->reach) + p->offset <= b->source.range);
         BRUNT_ASSERT(b->key[i].pair >= 0 && b->key[i].pair < b->pair_count);
         BRUNT_ASSERT(!i || b->key[i - 1].bodies < b->key[i].bodies);
     }

@@ -223,6 +223,7 @@ void brunt_closest_hessian(const brunt_closest *c, int dim, double outer, double
     turning(c, dim, turn);
     duals(c, inverse, dual);
     const int rows = c->places * dim;
+    const double d = c->d == 0 ? 1 : c->d; // `inner` is 0 there
     for (int i = 0; i < c->places; i++)
         for (int j = 0; j < c->places; j++) {
             const double ww = c->w[i] * c->w[j];
@@ -236,8 +237,7 @@ void brunt_closest_hessian(const brunt_closest *c, int dim, double outer, double
             for (int k = 0; k < dim; k++)
                 for (int l = 0; l < dim; l++)
                     h[(i * dim + k) * rows + j * dim + l] +=
-                        nn * c->n[k] * c->n[l] +
-                        inner * (ww * turn[k][l] / c->d - left[k] * c->n[l] - c->n[k] * right[l]);
+                        nn * c->n[k] * c->n[l] + inner * (ww * turn[k][l] / d - left[k] * c->n[l] - c->n[k] * right[l]);
         }
 }
 

@@ -86,6 +86,7 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
     X(averaged_surface)                                                                                                \
     X(surface_on_grid)                                                                                                 \
     X(barrier)                                                                                                         \
+    X(penalty)                                                                                                         \
     X(node_to_facet)
 #define DECLARE(name) extern const brunt_contact_row brunt_contact_##name;
 ROWS(DECLARE)
@@ -337,6 +338,20 @@ brunt_gap_energy *brunt_contact_energy(brunt_contact_method method) {
         if (brunt_contact_is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->energy)
             return brunt_contact_rows[r]->energy;
     return NULL;
+}
+
+bool brunt_contact_overlaps(brunt_contact_method method) {
+    bool overlaps = false;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        overlaps |= brunt_contact_is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->overlaps;
+    return overlaps;
+}
+
+bool brunt_contact_is_planar(brunt_contact_method method) {
+    bool planar = false;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        planar |= brunt_contact_is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->planar;
+    return planar;
 }
 
 void brunt_contact_methods_validate(unsigned rows, void *const memory[]) {

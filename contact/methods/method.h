@@ -32,6 +32,8 @@ typedef struct brunt_contact_row {
     const char *keys; // of `contact` in a scene that are its own, "a b c"; NULL: none
     brunt_contact_self self;
     bool never_axisymmetric; // not in axisymmetric scenes
+    bool planar;             // in two dimensions alone
+    bool overlaps;           // of an energy: surfaces may overlap, gaps have a sign
     // Of what meets at facets.
     bool knows_membranes;        // it knows the two sides of a membrane
     bool planes;                 // it acts where there are planes alone, too
@@ -98,6 +100,9 @@ void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size);
 // What a method does at nodes, and its energy; NULL: none.
 brunt_node_law *brunt_contact_node_law(brunt_contact_method method);
 brunt_gap_energy *brunt_contact_energy(brunt_contact_method method);
+// Whether surfaces may overlap by a method, and whether it is of two dimensions alone.
+bool brunt_contact_overlaps(brunt_contact_method method);
+bool brunt_contact_is_planar(brunt_contact_method method);
 brunt_contact_self brunt_contact_with_itself(brunt_contact_method method);
 // Aborts where a row keeps something that `rows` has no bit of, or what it keeps is not as it must be. `memory`: of
 // each.

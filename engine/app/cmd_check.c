@@ -271,13 +271,22 @@ static double fastest_particle(brunt_world *world, int32_t body) {
     return sqrt(most);
 }
 
+static void print_range(const char *key, const double range[2], const char *unit) {
+    if (!(range[1] > 0)) return;
+    printf(", %s %.4g", key, range[0]);
+    if (range[1] > range[0]) printf(" to %.4g", range[1]);
+    printf(" %s", unit);
+}
+
 // What contact goes by where the scene does not say: it decides how near bodies come and how they rest.
 static void print_barrier(const brunt_world *world) {
     brunt_barrier_values v;
     if (!brunt_world_barrier(world, &v)) return;
-    printf("  contact.distance %.4g m, contact.stiffness %.4g", v.distance, v.stiffness[0]);
-    if (v.stiffness[1] > v.stiffness[0]) printf(" to %.4g", v.stiffness[1]);
-    printf(" Pa\n");
+    printf("  contact.distance %.4g m", v.distance);
+    print_range("contact.stiffness", v.stiffness, "Pa");
+    print_range("contact.penalty", v.penalty, "Pa/m");
+    if (v.penalty[1] > 0 && v.width > 0) printf(": 20 E* / a, a of %.4g m until contacts tell it", v.width);
+    printf("\n");
     if (v.slip_speed > 0)
         printf("  contact.slip_speed %.4g m/s, %.3g of the slowest wave speed: what sticks creeps by up to that, "
                "and slower sliding has less than Coulomb's friction\n",

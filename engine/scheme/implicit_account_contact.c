@@ -196,12 +196,23 @@ static void account_forces(brunt_world *world) {
     if (c->plane_count) account_moments(m, &world->boundaries.boundary[c->plane_boundary[0]].last);
 }
 
+static const double DEEP = 0.5; // what is left of the way that surfaces may overlap by
+
 // A gap that is next to nothing says that the barrier is too soft for what presses.
 static void warn_of_gap(brunt_world *world, const brunt_barrier_report *report) {
-    if (world->clock.gap_told || !(report->least_part < INFINITY) || report->body < 0 ||
-        !brunt_barrier_gap_is_small(report->least_gap, report->least_gap / report->least_part))
-        return;
+    if (world->clock.gap_told || !(report->least_part < INFINITY) || report->body < 0) return;
+    if (!(report->overlaps ? report->least_part < DEEP : brunt_barrier_gap_is_small(report->least_part, 1))) return;
     world->clock.gap_told = 1;
+    if (report->overlaps) {
+        brunt_warn(
+            &world->messages,
+            "bodies.%s: at t = %.4g s %s is %.3g m deep in it, at (%.4g, %.4g, %.4g) m, %.2g of the half edge that "
+            "it may be: contact.penalty is low for what presses there",
+            brunt_body_name(world, report->body), world->clock.time,
+            report->other < 0 ? "a plane" : brunt_body_name(world, report->other), -report->least_gap,
+            report->position[0], report->position[1], report->position[2], 1 - report->least_part);
+        return;
+    }
     brunt_warn(&world->messages,
                "bodies.%s: at t = %.4g s the gap to %s has become %.2g of contact.distance, at (%.4g, %.4g, %.4g) m: "
                "contact.stiffness is low for what presses there",

@@ -17,16 +17,22 @@
 
 static const double CREEP = 1e-5; // of the slowest wave speed: the slip speed by default
 static const double GIVES = 0.01; // of the distance: the slip length of load steps by default
+static const double HALF = 0.5;   // of the finest size: how deep surfaces may overlap
 
 // ------------------------------------------------------------------------------------------ stiffness and distance
 
-// [Pa] Young's modulus, or of what has none that of its waves.
-static double young(const brunt_material_def *from, const brunt_material *material) {
+// A parameter of a material's strength; 0: it has none of that name.
+static double parameter(const brunt_material_def *from, const char *key) {
     const brunt_model *model = brunt_find_strength(from->strength);
     for (int k = 0; model && k < model->parameter_count; k++)
-        if (!strcmp(model->parameters[k].key, "E") && from->strength_parameters[k] > 0)
-            return from->strength_parameters[k];
-    return (double)material->density * (double)material->wave_speed * (double)material->wave_speed;
+        if (!strcmp(model->parameters[k].key, key)) return from->strength_parameters[k];
+    return 0;
+}
+
+// [Pa] Young's modulus, or of what has none that of its waves.
+static double young(const brunt_material_def *from, const brunt_material *material) {
+    const double own = parameter(from, "E");
+    return own > 0 ? own : (double)material->density * (double)material->wave_speed * (double)material->wave_speed;
 }
 
 // [m] shortest edge of a mesh at the start, or spacing of particles.
@@ -53,18 +59,26 @@ static double stiffness_of(const brunt_implicit_contact *c, double young_a, doub
     return c->stiffness > 0 ? c->stiffness : brunt_barrier_default_stiffness(young_a, young_b);
 }
 
+// [Pa/m] By how deep they overlap, where they may; a plane's modulus is INFINITY.
+static double penalty_of(const brunt_implicit_contact *c, double modulus_a, double modulus_b) {
+    return c->penalty > 0 ? c->penalty : brunt_penalty_default_stiffness(modulus_a, modulus_b, c->width);
+}
+
 // What two bodies are to each other, made when it is asked: of many bodies few are ever near each other.
 bool brunt_implicit_contact_pair(const void *self, int32_t a, int32_t b, brunt_barrier_pair *pair) {
     const brunt_implicit_contact *c = self;
     const int32_t p = brunt_pair_of(&c->pairs->map, a, b);
     brunt_gap_energy *energy = p < 0 ? NULL : brunt_contact_energy(c->pairs->pair[p].method);
     if (!energy) return false;
+    const bool overlaps = brunt_contact_overlaps(c->pairs->pair[p].method);
     *pair = (brunt_barrier_pair){.a = a,
                                  .b = b,
                                  .account = p,
-                                 .distance = c->distance,
+                                 .distance = overlaps ? c->overlap_distance : c->distance,
                                  .offset = a == b ? 0 : c->half[a] + c->half[b],
-                                 .stiffness = stiffness_of(c, c->young[a], c->young[b]),
+                                 .stiffness = overlaps ? penalty_of(c, c->modulus[a], c->modulus[b])
+                                                       : stiffness_of(c, c->young[a], c->young[b]),
+                                 .reach = overlaps ? c->reach : 0,
                                  .friction = c->pairs->pair[p].friction,
                                  .slip_speed = c->slip_speed,
                                  .energy = energy};
@@ -77,7 +91,7 @@ static brunt_barrier_pair_source pair_source(const brunt_implicit_contact *c, in
     brunt_barrier_pair_source source = {.between = brunt_implicit_contact_pair, .self = c};
     double thickest = 0;
     for (int b = 0; b < bodies; b++) thickest = fmax(thickest, 2 * c->half[b]);
-    source.range = c->distance + thickest;
+    source.range = fmax(c->distance, 2 * c->reach) + thickest;
     for (int p = 0; p < c->pairs->count; p++)
         source.friction =
             source.friction || (c->pairs->pair[p].friction > 0 && brunt_contact_energy(c->pairs->pair[p].method));
@@ -109,10 +123,10 @@ static int reserve_arrays(brunt_implicit_contact *c, const brunt_world *world, b
     const size_t planes = (size_t)c->plane_count + 1;
     static const char of_planes[] = "planes that push";
     if (BRUNT_NEW(c->plane, planes, of_planes, error) || BRUNT_NEW(c->plane_boundary, planes, of_planes, error) ||
-        BRUNT_NEW(c->meets, planes, of_planes, error) ||
+        BRUNT_NEW(c->meets, planes, of_planes, error) || BRUNT_NEW(c->plane_modulus, planes, of_planes, error) ||
         BRUNT_NEW(c->has_points, world->bodies.mpm_count + 1, "bodies of points", error) ||
         BRUNT_NEW(c->met, bodies + 1, "bodies", error) || BRUNT_NEW(c->young, bodies + 1, "bodies", error) ||
-        BRUNT_NEW(c->half, bodies + 1, "bodies", error))
+        BRUNT_NEW(c->modulus, bodies + 1, "bodies", error) || BRUNT_NEW(c->half, bodies + 1, "bodies", error))
         return BRUNT_FAILED;
     for (int32_t q = 0; q < c->plane_count; q++)
         if (BRUNT_NEW(c->meets[q], bodies, "bodies at a plane", error)) return BRUNT_FAILED;
@@ -127,8 +141,12 @@ static int describe_bodies(brunt_implicit_contact *c, const brunt_world *world, 
     if (find_met(c, bodies->count, error)) return BRUNT_FAILED;
     for (int k = 0; k < bodies->fem_count; k++)
         c->half[bodies->fem[k].index] = 0.5 * (double)bodies->fem[k].contact_thickness;
-    for (int b = 0; b < bodies->count; b++)
-        c->young[b] = young(&def->materials[order[b]->material], brunt_bodies_material(bodies, b));
+    for (int b = 0; b < bodies->count; b++) {
+        const brunt_material_def *material = &def->materials[order[b]->material];
+        const double nu = parameter(material, "nu");
+        c->young[b] = young(material, brunt_bodies_material(bodies, b));
+        c->modulus[b] = c->young[b] / (1 - nu * nu);
+    }
     for (int32_t q = 0; q < c->plane_count; q++)
         for (int b = 0; b < bodies->count; b++)
             c->meets[q][b] = plane_meets(&world->boundaries.boundary[c->plane_boundary[q]], b);
@@ -140,30 +158,55 @@ static int describe_bodies(brunt_implicit_contact *c, const brunt_world *world, 
     return BRUNT_OK;
 }
 
-// A tenth of the finest size among bodies that meet something, unless the definition says.
-static double contact_distance(const brunt_implicit_contact *c, const brunt_bodies *bodies,
-                               const brunt_contact_def *def) {
+// [m] The finest size among bodies that meet something.
+static double finest_size(const brunt_implicit_contact *c, const brunt_bodies *bodies) {
     double finest = INFINITY;
-    if (def->distance > 0) return def->distance;
     for (int b = 0; b < bodies->count; b++) {
         bool meets = c->met[b];
         for (int32_t q = 0; q < c->plane_count; q++) meets = meets || c->meets[q][b];
         if (meets) finest = fmin(finest, smallest_size(bodies, b));
     }
-    return brunt_barrier_default_distance(finest);
+    return finest;
+}
+
+// Whether some surfaces, or some surfaces and planes, may overlap, or may not.
+static bool any_overlaps(const brunt_implicit_contact *c, const brunt_world_def *def, bool overlaps) {
+    bool any = c->plane_count > 0 && brunt_contact_overlaps(def->contact.method) == overlaps;
+    for (int p = 0; p < c->pairs->count; p++)
+        any = any || (brunt_contact_energy(c->pairs->pair[p].method) &&
+                      brunt_contact_overlaps(c->pairs->pair[p].method) == overlaps);
+    return any;
+}
+
+// Where contact begins and, of load steps, how far surfaces give: a tenth of the finest size and a hundredth of that,
+// unless the definition says; what may overlap begins to push where it does.
+static void take_lengths(brunt_implicit_contact *c, const brunt_bodies *bodies, const brunt_world_def *def) {
+    const brunt_contact_def *contact = &def->contact;
+    const double finest = finest_size(c, bodies);
+    c->width = finest, c->reach = any_overlaps(c, def, true) ? HALF * finest : 0;
+    c->opens = any_overlaps(c, def, false);
+    c->distance = contact->distance > 0 ? contact->distance : brunt_barrier_default_distance(finest);
+    c->overlap_distance = contact->distance;
+    c->slip_speed = contact->slip_speed > 0 ? contact->slip_speed : CREEP * slowest_wave(bodies);
+    if (def->scheme == BRUNT_STATIC)
+        c->slip_speed = contact->slip_length > 0 ? contact->slip_length : GIVES * c->distance;
 }
 
 static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def) {
     for (int32_t q = 0; q < c->plane_count; q++) {
         const brunt_boundary *boundary = &world->boundaries.boundary[c->plane_boundary[q]];
-        double softest = INFINITY;
+        double softest = INFINITY, *modulus = &c->plane_modulus[q];
+        *modulus = INFINITY;
         for (int b = 0; b < world->bodies.count; b++)
-            if (c->meets[q][b]) softest = fmin(softest, c->young[b]);
+            if (c->meets[q][b]) softest = fmin(softest, c->young[b]), *modulus = fmin(*modulus, c->modulus[b]);
+        const bool overlaps = brunt_contact_overlaps(def->contact.method);
         c->plane[q] = (brunt_barrier_plane){.node = -1,
                                             .meets = c->meets[q],
                                             .offset = c->half,
-                                            .distance = c->distance,
-                                            .stiffness = stiffness_of(c, softest, INFINITY),
+                                            .distance = overlaps ? c->overlap_distance : c->distance,
+                                            .stiffness = overlaps ? penalty_of(c, *modulus, INFINITY)
+                                                                  : stiffness_of(c, softest, INFINITY),
+                                            .reach = overlaps ? c->reach : 0,
                                             .friction = boundary->plane.friction,
                                             .slip_speed = c->slip_speed,
                                             .energy = brunt_contact_energy(def->contact.method)};
@@ -255,10 +298,8 @@ static int make_barrier(brunt_implicit_contact *c, brunt_world *world, const bru
     for (int b = 0; b < world->bodies.count; b++) meets = meets || c->met[b];
     if (!meets) return BRUNT_OK;
     c->stiffness = def->contact.stiffness;
-    c->slip_speed = def->contact.slip_speed > 0 ? def->contact.slip_speed : CREEP * slowest_wave(&world->bodies);
-    c->distance = contact_distance(c, &world->bodies, &def->contact);
-    if (def->scheme == BRUNT_STATIC)
-        c->slip_speed = def->contact.slip_length > 0 ? def->contact.slip_length : GIVES * c->distance;
+    c->penalty = def->contact.penalty;
+    take_lengths(c, &world->bodies, def);
     fill_planes(c, world, def);
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
     if ((status = make_surfaces(c, world, error))) return status;
@@ -281,46 +322,75 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
     return status;
 }
 
-static void take_stiffness(brunt_barrier_values *values, double stiffness) {
-    values->stiffness[0] = fmin(values->stiffness[0], stiffness);
-    values->stiffness[1] = fmax(values->stiffness[1], stiffness);
+static void take_stiffness(double range[2], double stiffness) {
+    range[0] = fmin(range[0], stiffness), range[1] = fmax(range[1], stiffness);
 }
 
 // Of two bodies the softer one counts: no pair is softer than the softest body, nor stiffer than the second stiffest,
 // but for a body with itself.
 static void take_pairs(brunt_barrier_values *values, const brunt_implicit_contact *c, int bodies) {
-    double softest = INFINITY, stiffest[2] = {0, 0};
+    double softest = INFINITY, stiffest[2] = {0, 0}, least[2] = {INFINITY, INFINITY}, most[2] = {0, 0};
     brunt_barrier_pair itself;
     for (int b = 0; b < bodies; b++) {
         if (!c->met[b]) continue;
         softest = fmin(softest, c->young[b]);
+        least[1] = fmin(least[1], fmax(least[0], c->modulus[b])), least[0] = fmin(least[0], c->modulus[b]);
         stiffest[1] = fmax(stiffest[1], fmin(stiffest[0], c->young[b]));
         stiffest[0] = fmax(stiffest[0], c->young[b]);
-        if (brunt_implicit_contact_pair(c, b, b, &itself)) take_stiffness(values, itself.stiffness);
+        most[1] = fmax(most[1], fmin(most[0], c->modulus[b])), most[0] = fmax(most[0], c->modulus[b]);
+        if (brunt_implicit_contact_pair(c, b, b, &itself)) take_stiffness(values->stiffness, itself.stiffness);
     }
     if (softest == INFINITY) return;
-    take_stiffness(values, stiffness_of(c, softest, INFINITY));
-    take_stiffness(values, stiffness_of(c, stiffest[1] > 0 ? stiffest[1] : softest, INFINITY));
+    if (c->reach > 0 && most[1] > 0) {
+        take_stiffness(values->penalty, penalty_of(c, least[0], least[1]));
+        take_stiffness(values->penalty, penalty_of(c, most[0], most[1]));
+    }
+    take_stiffness(values->stiffness, stiffness_of(c, softest, INFINITY));
+    take_stiffness(values->stiffness, stiffness_of(c, stiffest[1] > 0 ? stiffest[1] : softest, INFINITY));
 }
 
 bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values) {
     if (!world->plan.implicit || !world->plan.implicit->contact.barrier) return false;
     const brunt_implicit_contact *c = &world->plan.implicit->contact;
-    *values = (brunt_barrier_values){
-        .distance = c->distance, .stiffness = {INFINITY, 0}, .slowest_wave = slowest_wave(&world->bodies)};
+    *values = (brunt_barrier_values){.distance = c->opens ? c->distance : c->overlap_distance,
+                                     .stiffness = {INFINITY, 0},
+                                     .penalty = {INFINITY, 0},
+                                     .width = c->penalty > 0 ? 0 : c->width,
+                                     .seen = c->seen,
+                                     .slowest_wave = slowest_wave(&world->bodies)};
     take_pairs(values, c, world->bodies.count);
-    for (int32_t q = 0; q < c->plane_count; q++) take_stiffness(values, c->plane[q].stiffness);
+    for (int32_t q = 0; q < c->plane_count; q++)
+        take_stiffness(c->plane[q].reach > 0 ? values->penalty : values->stiffness, c->plane[q].stiffness);
+    if (!c->opens) values->stiffness[0] = values->stiffness[1] = 0;
     if (brunt_barrier_has_friction(c->barrier))
         *(brunt_world_static(world) ? &values->slip_length : &values->slip_speed) = c->slip_speed;
     return true;
 }
 
+void brunt_implicit_contact_widen(brunt_implicit_contact *c, double width) {
+    c->width = width, c->seen = true;
+    for (int32_t q = 0; q < c->plane_count; q++)
+        if (c->plane[q].reach > 0) c->plane[q].stiffness = penalty_of(c, c->plane_modulus[q], INFINITY);
+}
+
+double brunt_implicit_contact_width(const brunt_implicit_contact *c) {
+    double length = 0;
+    int32_t count = 0;
+    for (int32_t k = 0; k < c->forces.count; k++) {
+        const brunt_barrier_force *f = &c->forces.force[k];
+        if (!(fabs(f->normal[0]) + fabs(f->normal[1]) > 0)) continue;
+        length += f->area, count++;
+    }
+    return count > 0 ? fmax(length / (2 * count), c->reach / HALF) : 0;
+}
+
 void brunt_implicit_contact_free(brunt_implicit_contact *c) {
     brunt_barrier_free(c->barrier);
     for (int32_t q = 0; c->meets && q < c->plane_count; q++) brunt_free(c->meets[q]);
-    void *const all[] = {c->rest, c->position,       c->body,  c->node,  c->facet,  c->has_points,  c->x,
-                         c->area, c->weight,         c->owner, c->half,  c->first,  c->young,       c->point_node,
-                         c->met,  c->plane_boundary, c->meets, c->plane, c->before, c->inverse_mass};
+    void *const all[] = {c->rest,  c->position,      c->body,       c->node,        c->facet,          c->has_points,
+                         c->x,     c->area,          c->modulus,    c->weight,      c->owner,          c->half,
+                         c->first, c->young,         c->point_node, c->met,         c->plane_boundary, c->meets,
+                         c->plane, c->plane_modulus, c->before,     c->inverse_mass};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     brunt_barrier_forces_free(&c->forces), brunt_barrier_forces_free(&c->forces_before);
     brunt_barrier_tractions_free(&c->tractions);

@@ -22,14 +22,22 @@ typedef struct brunt_implicit_contact {
     const brunt_pairs *pairs; // of the world: accounts
     bool *met;                // of each body: another meets it, or itself does, by a barrier
     double *young;            // [Pa] of each body
+    double *modulus;          // [Pa] of each body, E / (1 - nu^2): with its sides held
     double *half;             // [m] of each body: half its thickness in contact, of membranes; else 0
     double distance;          // [m]
+    double overlap_distance;  // [m] of what may overlap, 0 unless the definition says
     double stiffness;         // [Pa] of all; 0: of each pair and plane by what is softer
+    double penalty;           // [Pa/m] of all that may overlap; 0: 20 E* / width of each pair and plane
+    double width;             // [m] half the length of contacts
+    bool seen;                // the width is that of contacts, no longer a guess
+    bool opens;               // some gaps stay open
+    double reach;             // [m] that surfaces overlap less than, where they may: half the shortest edge; 0: none do
     double slip_speed;        // [m/s]; of load steps the slip length [m]
     // Planes in their order.
     brunt_barrier_plane *plane;
     int32_t *plane_boundary;
-    bool **meets; // of each plane: the bodies it is for
+    bool **meets;          // of each plane: the bodies it is for
+    double *plane_modulus; // [Pa] of each plane: of the softest body that meets it
     int32_t plane_count;
     brunt_barrier_forces forces, forces_before;
     bool tells; // tractions
@@ -53,6 +61,10 @@ int brunt_implicit_contact_check(brunt_implicit_contact *c, brunt_world *world, 
                                  bool given, brunt_error *error);
 // Aborts where surfaces, pairs and planes are not of what there is: so many bodies, boundaries and pairs of the world.
 void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int boundaries, int pairs);
+// [m] Half the mean length of contacts by the forces that were taken last, no less than the shortest edge; 0: nothing
+// is in contact. What may overlap is as stiff from then on as goes with it, once it is told so.
+double brunt_implicit_contact_width(const brunt_implicit_contact *c);
+void brunt_implicit_contact_widen(brunt_implicit_contact *c, double width);
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);
 // Places and weights of a step, whose unknowns have numbers. BRUNT_OK, or BRUNT_FAILED.
 int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_bodies *bodies, const brunt_unknowns *u,

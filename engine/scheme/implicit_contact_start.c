@@ -12,7 +12,10 @@
 #include "contact/barrier/barrier_function.h"
 #include "world/create.h"
 
-static const double WITHIN = 0.99; // of the distance: nearer gaps have a force to speak of at the start
+static const double WITHIN = 0.99;   // of the distance: nearer gaps have a force to speak of at the start
+static const double ROUNDING = 1e-9; // of the reach
+
+#define TOO_DEEP "more than half the shortest edge in contact, %.4g m: surfaces do not know which way is out from there"
 
 typedef struct looked_at {
     const brunt_body_ref *body;
@@ -36,10 +39,11 @@ static bool local_point(const looked_at *l, int64_t n, double x[3], double local
     return true;
 }
 
-static bool touches(const looked_at *l, double x[3]) {
+// Whether a point lies in the other's shape, deeper than it may.
+static bool touches(const looked_at *l, double reach, double x[3]) {
     double local[3];
     for (int64_t n = 0; local_point(l, n, x, local); n++)
-        if (!(brunt_shape_distance(&l->other->shape, l->dim, local) > 0)) return true;
+        if (!(brunt_shape_distance(&l->other->shape, l->dim, local) > -reach)) return true;
     return false;
 }
 
@@ -63,7 +67,11 @@ static int check_near(const brunt_implicit_contact *c, const brunt_world *world,
     if (!brunt_implicit_contact_pair(c, one < other ? one : other, one < other ? other : one, &pair)) return BRUNT_OK;
     const looked_at l = {&world->bodies.all[one], order[other], world->settings.dimension};
     double x[3];
-    if (!touches(&l, x)) return BRUNT_OK;
+    if (!touches(&l, pair.reach, x)) return BRUNT_OK;
+    if (pair.reach > 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "bodies.%s lies in bodies.%s at the start, at (%.6g, %.6g, %.6g) m, by " TOO_DEEP,
+                          brunt_body_name(world, one), brunt_body_name(world, other), x[0], x[1], x[2], pair.reach);
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s touches bodies.%s at the start, or lies in it, at (%.6g, %.6g, %.6g) m: barriers want "
                       "a gap of more than 0 m, of %.4g m to begin without a force",
@@ -146,11 +154,29 @@ static double kinetic_energy(const brunt_bodies *bodies) {
     return sum;
 }
 
-// A closed gap has no energy that a step could begin with; one within the barrier pushes from the first step on.
+// What is nearest begins in what it meets.
+static int check_overlap(const brunt_implicit_contact *c, brunt_world *world, const brunt_barrier_report *r,
+                         const char *to, brunt_error *error) {
+    if (r->least_gap < -c->reach)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "bodies.%s overlaps %s by %.4g m at the start, at (%.6g, %.6g, %.6g) m, " TOO_DEEP,
+                          brunt_body_name(world, r->body), to, -r->least_gap, r->position[0], r->position[1],
+                          r->position[2], c->reach);
+    brunt_warn(&world->messages,
+               "bodies.%s overlaps %s by %.4g m at the start, at (%.6g, %.6g, %.6g) m: penalties push them apart in "
+               "the first load step; they store %.3g J",
+               brunt_body_name(world, r->body), to, -r->least_gap, r->position[0], r->position[1], r->position[2],
+               r->energy);
+    return BRUNT_OK;
+}
+
+// A closed gap has no energy that a step could begin with, unless surfaces may overlap; one within the distance pushes
+// from the first step on.
 static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given, brunt_error *error) {
     brunt_barrier_report r;
+    const double distance = c->opens ? c->distance : c->overlap_distance;
     const int status = look_at_start(c, world, &r, error);
-    if (status || !(r.least_gap < WITHIN * c->distance)) return status;
+    if (status || !(r.least_gap < WITHIN * distance || r.least_gap < -ROUNDING * c->reach)) return status;
     char to[2 * BRUNT_NAME_LENGTH];
     if (r.plane >= 0)
         snprintf(to, sizeof to, "the plane '%s'", world->boundaries.boundary[c->plane_boundary[r.plane]].name);
@@ -159,11 +185,13 @@ static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given,
     if (r.least_gap > 0) {
         brunt_warn(&world->messages,
                    "bodies.%s begins with a gap of %.4g m to %s, at (%.6g, %.6g, %.6g) m: within contact.distance, "
-                   "%.4g m%s, barriers push; they store %.3g J at the start, all bodies move with %.3g J",
+                   "%.4g m%s, %s push; they store %.3g J at the start, all bodies move with %.3g J",
                    brunt_body_name(world, r.body), r.least_gap, to, r.position[0], r.position[1], r.position[2],
-                   c->distance, given ? "" : " by default", r.energy, kinetic_energy(&world->bodies));
+                   distance, given ? "" : " by default", c->opens ? "barriers" : "penalties", r.energy,
+                   kinetic_energy(&world->bodies));
         return BRUNT_OK;
     }
+    if (r.overlaps) return check_overlap(c, world, &r, to, error);
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s has a gap of %.4g m to %s at the start, at (%.6g, %.6g, %.6g) m: barriers want more "
                       "than 0 m, %.4g m to begin without a force",

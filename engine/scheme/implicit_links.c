@@ -51,8 +51,9 @@ void brunt_world_link_sums(const brunt_world *world, brunt_link_sums *sums) {
 int brunt_world_tell_tractions(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     if (!contact_of(&world->plan) || m->unknowns.dim != 2)
-        return brunt_fail(error, BRUNT_BAD_INPUT,
-                          "output.tractions: of two dimensions, implicit or load steps and contact.method barrier");
+        return brunt_fail(
+            error, BRUNT_BAD_INPUT,
+            "output.tractions: of two dimensions, implicit or load steps and contact.method barrier or penalty");
     m->contact.tells = true;
     return BRUNT_OK;
 }

@@ -374,6 +374,9 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
     int status = find_tractions(world, dt, report, error);
     if (!status) status = solve_step(world, dt, report, error);
+    bool again = false;
+    if (!status && brunt_static_guesses(m)) status = brunt_static_see(world, &again, error);
+    if (!status && again) status = solve_step(world, dt, report, error);
     bool settled = false; // pressures are those that friction went by: a first correction is below the tolerance
     for (int k = 1; !status && m->rubs && !m->still && !settled && k < m->friction_iterations; k++) {
         if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;

@@ -74,7 +74,7 @@ static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
     X(elements, world->bodies.fem_count > 0, "bodies: method fem or membrane")                                         \
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
     X(contact, world->contact.rows != 0, "contact.method")                                                             \
-    X(barrier, world->contact.has_barrier, "contact.method: barrier")                                                  \
+    X(barrier, world->contact.has_barrier, "contact.method: barrier or penalty")                                       \
     X(tied, has_tied(&world->pairs), "contact.pairs: method tied")                                                     \
     X(self_contact, world->contact.has_self, "contact.pairs: a body with itself")                                      \
     X(friction, world->contact.has_friction || world->boundaries.has_friction, "friction of contact or boundaries")    \

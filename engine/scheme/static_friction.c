@@ -134,13 +134,3 @@ int brunt_static_rub(struct brunt_implicit *m, brunt_minimise *minimise, brunt_n
                       "are left.",
                       m->options.iterations, r.off);
 }
-
-// ------------------------------------------------------------------------------------------ of the state
-
-static brunt_barrier *keeper(const brunt_plan *plan) { return plan->implicit ? plan->implicit->contact.barrier : NULL; }
-
-int64_t brunt_implicit_kept_count(const brunt_plan *plan) { return brunt_barrier_kept_count(keeper(plan)); }
-
-void brunt_implicit_kept_get(const brunt_plan *plan, double *to) { brunt_barrier_kept_get(keeper(plan), to); }
-
-void brunt_implicit_kept_set(const brunt_plan *plan, const double *from) { brunt_barrier_kept_set(keeper(plan), from); }

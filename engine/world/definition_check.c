@@ -203,6 +203,7 @@ static int check_contact(const brunt_world_def *def, brunt_error *error) {
                         {".cell", &contact->cell, 1, BRUNT_NOT_NEGATIVE},
                         {".distance", &contact->distance, 1, BRUNT_NOT_NEGATIVE},
                         {".stiffness", &contact->stiffness, 1, BRUNT_NOT_NEGATIVE},
+                        {".penalty", &contact->penalty, 1, BRUNT_NOT_NEGATIVE},
                         {".slip_speed", &contact->slip_speed, 1, BRUNT_NOT_NEGATIVE},
                         {".slip_length", &contact->slip_length, 1, BRUNT_NOT_NEGATIVE});
     if (contact->friction_iterations < 1)

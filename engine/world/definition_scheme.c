@@ -249,24 +249,35 @@ static void look_at_static(const brunt_world_def *def, refusals *r) {
 // ------------------------------------------------------------------------------------------ both
 
 // Methods of contact that a scheme has not got.
-static void look_at_method(brunt_contact_method method, brunt_scheme scheme, const refusals *r) {
+static void look_at_method(brunt_contact_method method, const brunt_world_def *def, const refusals *r) {
+    const brunt_scheme scheme = def->scheme;
     static const char own[] = "where no method is given each scheme takes its own";
     char words[80];
-    if (brunt_contact_of_scheme(method, scheme)) return;
+    if (brunt_contact_of_scheme(method, scheme)) {
+        if (brunt_contact_is_planar(method) && def->dimension != 2)
+            say(r, ".method", "%s: of two dimensions alone; in three %s is wanted", brunt_contact_word(method),
+                brunt_contact_word(brunt_contact_default(scheme, true)));
+        return;
+    }
+    const char *of = brunt_contact_of_scheme(method, BRUNT_EXPLICIT)   ? "explicit"
+                     : brunt_contact_of_scheme(method, BRUNT_IMPLICIT) ? "implicit"
+                                                                       : "static";
     brunt_contact_words_of(scheme, words, sizeof words);
     if (brunt_scheme_minimises(scheme))
-        say(r, ".method", "%s: " EXPLICIT_ONLY ", %s is wanted; %s", brunt_contact_word(method), words, own);
+        say(r, ".method", "%s: this belongs to time.scheme: %s, %s is wanted; %s", brunt_contact_word(method), of,
+            words, own);
     else
-        say(r, ".method", "%s: this belongs to time.scheme: implicit; %s", brunt_contact_word(method), own);
+        say(r, ".method", "%s: this belongs to time.scheme: %s; %s", brunt_contact_word(method), of, own);
 }
 
 static void look_at_methods(const brunt_world_def *def, refusals *r) {
     const brunt_contact_def *contact = &def->contact;
     set_owner(r, "contact");
-    if (def->body_count > 1 || def->scheme == BRUNT_EXPLICIT) look_at_method(contact->method, def->scheme, r);
+    if (def->body_count > 1 || def->scheme == BRUNT_EXPLICIT || brunt_contact_is_planar(contact->method))
+        look_at_method(contact->method, def, r);
     for (int32_t q = 0; q < contact->pair_count; q++) {
         set_owner(r, "contact.pairs[%d]", q);
-        look_at_method(contact->pairs[q].method, def->scheme, r);
+        look_at_method(contact->pairs[q].method, def, r);
     }
 }
 

@@ -136,6 +136,14 @@ static json_t *balance_of(const brunt_world *world) {
     return balance;
 }
 
+// [Pa/m] Least and greatest of what may overlap, NULL where nothing does.
+static json_t *penalty_of(const brunt_world *world) {
+    brunt_barrier_values v;
+    if (!brunt_world_barrier(world, &v) || !(v.penalty[1] > 0)) return NULL;
+    return json_pack("{s:o, s:o, s:o}", "least", number(v.penalty[0]), "greatest", number(v.penalty[1]), "a",
+                     number(v.width));
+}
+
 // Of implicit steps, NULL of others.
 static json_t *newton_of(const brunt_world *world) {
     brunt_newton_counts n;
@@ -196,6 +204,8 @@ static void set_newton(json_t *object, const brunt_world *world) {
     json_object_set_new(object, "balance", balance_of(world));
     json_object_set_new(object, "links", links_of(world));
     json_object_set_new(object, "least_gap", number(n.least_gap));
+    json_t *penalty = penalty_of(world);
+    if (penalty) json_object_set_new(object, "penalty", penalty);
 }
 
 static json_t *measures_of(const brunt_summary *summary, const brunt_scene *scene) {
@@ -340,6 +350,22 @@ static void print_balance(brunt_world *world, brunt_console *console) {
                         brunt_body_name(world, b.worst), b.body, b.all);
 }
 
+// How near surfaces came, or how deep into each other, and what pushes them apart there.
+static void print_gap(brunt_world *world, const brunt_newton_counts *n, brunt_console *console) {
+    brunt_barrier_values v;
+    const bool overlaps = brunt_world_barrier(world, &v) && v.penalty[1] > 0;
+    brunt_console_print(console, "least gap %.4g m, %.3g of %s\n", n->least_gap, n->least_part,
+                        !overlaps            ? "contact.distance"
+                        : v.stiffness[1] > 0 ? "contact.distance, or of the way that surfaces may overlap by"
+                                             : "the way that surfaces may overlap by is left");
+    if (!overlaps) return;
+    brunt_console_print(console, "contact.penalty %.4g to %.4g Pa/m", v.penalty[0], v.penalty[1]);
+    if (v.width > 0)
+        brunt_console_print(console, ": 20 E* / a, a %.4g m, %s", v.width,
+                            v.seen ? "half the mean length of contacts" : "the shortest edge");
+    brunt_console_print(console, "\n");
+}
+
 static void print_newton(brunt_world *world, brunt_console *console) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
@@ -352,8 +378,7 @@ static void print_newton(brunt_world *world, brunt_console *console) {
                         still ? " of those that act" : " m/s");
     brunt_console_print(console, "linear systems: %.0f factorised, %.0f iterations\n", n.factorisations,
                         n.linear_iterations);
-    if (isfinite(n.least_gap))
-        brunt_console_print(console, "least gap %.4g m, %.3g of contact.distance\n", n.least_gap, n.least_part);
+    if (isfinite(n.least_gap)) print_gap(world, &n, console);
 }
 
 static void print_measures(const brunt_summary *summary, const brunt_scene *scene, brunt_console *console) {

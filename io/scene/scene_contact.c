@@ -43,7 +43,10 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
                                 "contact of a body with itself wants its mesh, '%s' is of method mpm", pair->a);
         return;
     }
-    if (body->method != BRUNT_MEMBRANE)
+    if (brunt_scheme_minimises(reader->scene->world.scheme))
+        brunt_tree_complain(reader->tree, method ? method : between,
+                            "contact of a body with itself is by %s: method: %s is wanted", word, word);
+    else if (body->method != BRUNT_MEMBRANE)
         brunt_tree_complain(reader->tree, between,
                             "contact of a body with itself is for membranes in explicit steps, '%s' is none", pair->a);
     else if (self == BRUNT_SELF_NONE)
@@ -241,6 +244,7 @@ static void fill_keys(scene_reader *reader, scene_node *node) {
     contact->touch = (brunt_touch_kind)(int)take(reader, node, "touch", contact->touch);
     contact->distance = take(reader, node, "distance", 0);
     contact->stiffness = take(reader, node, "stiffness", 0);
+    contact->penalty = take(reader, node, "penalty", 0);
     contact->slip_speed = take(reader, node, "slip_speed", 0);
     contact->slip_length = take(reader, node, "slip_length", 0);
     contact->friction_iterations = (int)take(reader, node, "friction_iterations", 1);
@@ -325,8 +329,8 @@ int brunt_scene_take_values(const brunt_scene *scene, const brunt_world *world, 
     brunt_barrier_values v;
     if (!contact || contact->kind != SCENE_MAP || !brunt_world_barrier(world, &v)) return BRUNT_OK;
     scene_reader reader = {.tree = tree, .units = brunt_units_open(), .dimension = scene->world.dimension};
-    const bool one = v.stiffness[0] == v.stiffness[1];
-    const bool added = reader.units && add_number(&reader, contact, "distance", v.distance) &&
+    const bool one = v.stiffness[0] == v.stiffness[1] && v.stiffness[0] > 0;
+    const bool added = reader.units && (!(v.distance > 0) || add_number(&reader, contact, "distance", v.distance)) &&
                        (!one || add_number(&reader, contact, "stiffness", v.stiffness[0])) &&
                        (!(v.slip_speed > 0) || add_number(&reader, contact, "slip_speed", v.slip_speed));
     if (reader.units) brunt_units_close(reader.units);

@@ -322,7 +322,7 @@ void brunt_fill_output(scene_reader *reader) {
     output->float32 = brunt_real_of(node, "precision", 0) == 0;
     if (output->tractions && (reader->scene->world.dimension != 2 || reader->scene->world.scheme == BRUNT_EXPLICIT))
         brunt_tree_complain(reader->tree, brunt_tree_child(node, "tractions"),
-                            "of two dimensions, implicit or load steps and contact.method barrier");
+                            "of two dimensions, implicit or load steps and contact.method barrier or penalty");
     const scene_node *fields = brunt_tree_child(node, "fields"), *probes = brunt_tree_child(node, "probes");
     output->fields = brunt_entries_for(reader, brunt_children_of(fields, SCENE_LIST), sizeof *output->fields);
     for (const scene_node *child = output->fields ? fields->first : NULL; child; child = child->next)

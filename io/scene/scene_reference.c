@@ -128,7 +128,7 @@ static void write_row(FILE *out, const char *path, const char *kind, const char 
 }
 
 static void write_key(FILE *out, const scene_key *row) {
-    char kind[64], initial[48], doc[768], bounds[96], word[64];
+    char kind[64], initial[48], doc[1024], bounds[96], word[64];
     describe_kind(row, kind, sizeof kind);
     if (!row->initial)
         snprintf(initial, sizeof initial, "required");

@@ -155,7 +155,7 @@ static const char crowd_text[] =
     "bodies:\n"
     "  grains: {method: fem, material: gum, size: 1 mm, crowd: {lattice: square, count: [2, 2], radius: 5 mm,\n"
     "    radius_spread: 0.1, gap: 1 mm}, random: {E: {normal: [1e6, 2e5], between: [5e5, 2e6]}, seed: 3}}\n"
-    "contact: {method: barrier, friction: 0.2, slip_length: 1 um}\n";
+    "contact: {method: penalty, friction: 0.2, slip_length: 1 um, penalty: 1e9}\n";
 
 static const char *const texts[] = {small_scene_text, small_elements_text, rich_text,   implicit_text,
                                     flat_text,        tool_text,           static_text, crowd_text};

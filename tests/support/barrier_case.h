@@ -172,7 +172,7 @@ static inline void case_ready(barrier_case *c) {
     ck_assert_msg(brunt_barrier_set_mesh(c->barrier, &mesh, &error) == BRUNT_OK, "%s", error.message);
     brunt_barrier_pair_source source = {.between = case_meet, .self = c};
     for (int32_t i = 0; i < c->pairs; i++) {
-        source.range = fmax(source.range, c->pair[i].distance + c->pair[i].offset);
+        source.range = fmax(source.range, fmax(c->pair[i].distance, 2 * c->pair[i].reach) + c->pair[i].offset);
         source.friction = source.friction || c->pair[i].friction > 0;
     }
     brunt_barrier_set_pairs(c->barrier, &source);

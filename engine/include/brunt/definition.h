@@ -72,7 +72,8 @@ typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer
     X(MULTI_VELOCITY, "multi-velocity")                                                                                \
     X(AUGURY, "augury")                                                                                                \
     X(TIED, "tied")                                                                                                    \
-    X(BARRIER, "barrier")
+    X(BARRIER, "barrier")                                                                                              \
+    X(PENALTY, "penalty")
 #define BRUNT_CONTACT_VALUE(name, word) BRUNT_CONTACT_##name,
 typedef enum brunt_contact_method { BRUNT_CONTACT_METHODS(BRUNT_CONTACT_VALUE) } brunt_contact_method;
 #undef BRUNT_CONTACT_VALUE
@@ -112,9 +113,10 @@ typedef struct brunt_contact_def {
     double cell;      // [m] >= 0 of the contact grid; 0 (default) = the mean surface edge (published: twice that)
     brunt_transfer transfer; // of the published form: BRUNT_PIC or BRUNT_APIC (default)
     brunt_touch_kind touch;  // of node to facet; default elastic
-    // Of barriers.
+    // Of barriers and penalties.
     double distance;  // [m] >= 0: gaps beyond it know nothing of each other; 0 (default) = a tenth of the shortest edge
-                      // or spacing of particles
+                      // or spacing of particles, of penalties nothing: surfaces push where they overlap
+    double penalty;   // [Pa/m] >= 0 pressure by overlap of penalties; 0 (default) = 20 E* / a of each pair (penalty.c)
     double stiffness; // [Pa] >= 0 of the barrier; 0 (default) = a tenth of Young's modulus of the softer body of a pair
     double slip_speed;  // [m/s] >= 0: below it friction grows with the speed; 0 (default) = 1e-5 of the slowest wave
                         // speed

@@ -174,8 +174,10 @@ typedef struct brunt_newton_systems {
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems); // false: explicit
 // Contact of implicit steps, as given or by default.
 typedef struct brunt_barrier_values {
-    double distance;                 // [m]
-    double stiffness[2];             // [Pa] least and greatest of pairs and planes
+    double distance;          // [m]
+    double stiffness[2];      // [Pa] least and greatest of pairs and planes; 0: no gap stays open
+    double penalty[2], width; // [Pa/m] the same of what may overlap, INFINITY, 0: nothing may; [m] they go by, 0: given
+    bool seen;                // the width is that of contacts; else it is a guess
     double slip_speed, slowest_wave; // [m/s]; slip_speed 0: nothing rubs
     double slip_length;              // [m] of load steps, in place of slip_speed
 } brunt_barrier_values;

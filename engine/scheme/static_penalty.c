@@ -1,0 +1,51 @@
+// What load steps take for the stiffness of surfaces that may overlap, where a scene does not say: 20 E* / a, with a
+// half the mean length of contacts. How long those are is not known before they are there: the first load step in which
+// anything touches is solved with the shortest edge for a, and once more with what contacts have told.
+#include "base/error.h"
+#include "scheme/implicit.h"
+
+bool brunt_static_guesses(const struct brunt_implicit *m) {
+    return m->still && m->contact.reach > 0 && !(m->contact.penalty > 0) && !m->contact.seen;
+}
+
+int brunt_static_see(brunt_world *world, bool *again, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    brunt_implicit_contact *c = &m->contact;
+    brunt_barrier_report unused;
+    *again = false;
+    if (m->rubs && brunt_barrier_lag(c->barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, &unused, &c->forces, error))
+        return BRUNT_FAILED;
+    const double width = brunt_implicit_contact_width(c);
+    if (!(width > 0)) return BRUNT_OK;
+    *again = width != c->width;
+    brunt_implicit_contact_widen(c, width);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ of the state
+
+// How far surfaces have given along each other, and how long contacts were.
+static brunt_implicit_contact *keeper(const brunt_plan *plan) {
+    return plan->implicit && plan->implicit->contact.barrier ? &plan->implicit->contact : NULL;
+}
+
+int64_t brunt_implicit_kept_count(const brunt_plan *plan) {
+    const brunt_implicit_contact *c = keeper(plan);
+    return c ? brunt_barrier_kept_count(c->barrier) + (c->reach > 0) : 0;
+}
+
+void brunt_implicit_kept_get(const brunt_plan *plan, double *to) {
+    const brunt_implicit_contact *c = keeper(plan);
+    if (!c) return;
+    brunt_barrier_kept_get(c->barrier, to);
+    if (c->reach > 0) to[brunt_barrier_kept_count(c->barrier)] = c->seen ? c->width : 0;
+}
+
+void brunt_implicit_kept_set(const brunt_plan *plan, const double *from) {
+    brunt_implicit_contact *c = keeper(plan);
+    if (!c) return;
+    brunt_barrier_kept_set(c->barrier, from);
+    const double width = c->reach > 0 ? from[brunt_barrier_kept_count(c->barrier)] : 0;
+    if (width > 0) brunt_implicit_contact_widen(c, width);
+}

@@ -1,0 +1,183 @@
+// Contact by penalties as a user meets it: what is refused, overlaps at the start, what is said of the stiffness, and
+// forces that are those of closed forms.
+#include <math.h>
+#include <stdio.h>
+
+#include "tests/support/small_program.h"
+
+#include <jansson.h>
+
+#ifndef BRUNT_FLOAT
+// A block above a stiff one that is wider, a gap (or, below 0, an overlap) between them; its top is pressed down by
+// 0.02 mm.
+static void put_blocks(const char *name, double gap, const char *contact) {
+    char text[2000];
+    snprintf(
+        text, sizeof text,
+        "brunt: 1\ndimension: 2\ntime: {scheme: static, steps: 4}\nnewton: {tolerance: 1e-9}\nmaterials:\n"
+        "  m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}\n"
+        "  stiff: {model: linear-elastic, density: 1000 kg/m^3, E: 50 TPa, nu: 0.3}\nbodies:\n"
+        "  lower: {method: fem, element: quad4, size: 2 mm, material: stiff, shape: {box: {min: [-9 mm, 0], max: [9 "
+        "mm, 8 mm]}}}\n"
+        "  upper: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [-8 mm, %.9g mm], max: [8 "
+        "mm, %.9g mm]}}}\n"
+        "boundaries:\n  - {name: base, body: lower, group: ymin, fix: [x, y]}\n"
+        "  - {body: upper, group: xmin, fix: [x]}\n  - {body: upper, group: xmax, fix: [x]}\n"
+        "  - {name: press, body: upper, group: ymax, displacement: [free, -0.02 mm], table: [[0 s, 0], [1 s, 1]]}\n"
+        "contact: {method: penalty%s}\noutput: {every: none, history: 0 s}\n",
+        8 + gap, 16 + gap, contact);
+    small_put(name, text);
+}
+
+static json_t *summary_of(const char *folder) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s/summary.json", small_folder, folder);
+    json_t *summary = json_load_file(path, 0, NULL);
+    ck_assert_ptr_nonnull(summary);
+    return summary;
+}
+
+static double number_of(const json_t *object, const char *key) {
+    return json_number_value(json_object_get(object, key));
+}
+
+// Beside a soft spring both are rigid: what pushes is k times how deep it is, whatever of it was there at the start,
+// over the mean of both surfaces, 16 mm of the wider one and 18 mm of the other, whose corners stand for two faces.
+static void check_force(const char *folder, double deep) {
+    json_t *summary = summary_of(folder);
+    const double k = number_of(json_object_get(summary, "penalty"), "least"), expected = k * deep * 17e-3;
+    ck_assert_double_gt(k, 0);
+    ck_assert_double_eq_tol(number_of(json_object_get(summary, "links"), "mean"), expected, 5e-4 * expected);
+    ck_assert_double_lt(fabs(number_of(json_object_get(summary, "energy"), "error_relative")), 1e-8);
+    json_decref(summary);
+}
+
+static const char soft[] = ", penalty: 1 kPa/mm";
+
+START_TEST(stiffness_is_said_and_is_by_the_length_of_contacts) {
+    static const double gap[] = {0, 0.012}; // meeting in the first step, or later
+    put_blocks("blocks.yaml", 0, "");
+    small_expect("check blocks.yaml", 0, "20 E* / a, a of 0.002 m until contacts tell it");
+    for (int i = 0; i < 2; i++) {
+        put_blocks("blocks.yaml", gap[i], "");
+        small_expect("run blocks.yaml -t 1 -o out --fresh", 0, "half the mean length of contacts");
+        json_t *summary = summary_of("out"), *penalty = json_object_get(summary, "penalty");
+        ck_assert_double_eq_tol(number_of(penalty, "a"), 8.5e-3, 1e-9);
+        const double wanted = 20 * 50e6 / 0.91 / (1 + 1e-6) / 8.5e-3;
+        ck_assert_double_eq_tol(number_of(penalty, "least"), wanted, 1e-9 * wanted);
+        ck_assert_double_lt(fabs(number_of(json_object_get(summary, "energy"), "error_relative")), 1e-8);
+        json_decref(summary);
+    }
+    put_blocks("blocks.yaml", 0, soft);
+    small_expect("run blocks.yaml -t 1 -o given", 0, "contact.penalty 1e+06 to 1e+06 Pa/m\n");
+    check_force("given", 0.02e-3);
+    // Surfaces that push from a distance on: as if they were nearer by that.
+    put_blocks("blocks.yaml", 0.012, ", penalty: 1 kPa/mm, distance: 5 um");
+    small_expect("run blocks.yaml -t 1 -q -o standing", 0, NULL);
+    check_force("standing", 0.013e-3);
+}
+END_TEST
+
+// What overlaps is pushed apart, and that is said; so deep that the way out is not known, it is refused.
+START_TEST(overlaps_push_apart_or_are_refused) {
+    put_blocks("blocks.yaml", -0.01, soft);
+    small_expect("run blocks.yaml -t 1 -o out", 0, "penalties push them apart in the first load step");
+    check_force("out", 0.03e-3);
+    put_blocks("blocks.yaml", -0.01, "");
+    small_expect("run blocks.yaml -t 1 -o out --fresh", 0, "half the mean length of contacts");
+    put_blocks("blocks.yaml", -1.1, "");
+    small_expect("run blocks.yaml -t 1 -o deep", 65, "more than half the shortest edge in contact, 0.001 m");
+    put_blocks("blocks.yaml", -5, "");
+    small_expect("run blocks.yaml -t 1 -o deep", 65, "surfaces do not know which way is out from there");
+}
+END_TEST
+
+// Softer than what presses asks: it is said while there is half of the way left, and surfaces never pass each other.
+START_TEST(too_soft_is_said) {
+    put_blocks("blocks.yaml", 0, ", penalty: 50 Pa/mm");
+    small_expect("run blocks.yaml -t 1 -o out --set 'boundaries[3].displacement=[free, -0.7 mm]'", 0,
+                 "contact.penalty is low for what presses there");
+    put_blocks("blocks.yaml", 0, ", penalty: 50 Pa/mm");
+    small_expect("run blocks.yaml -t 1 -o far --set 'boundaries[3].displacement=[free, -3 mm]'", 70, NULL);
+}
+END_TEST
+
+START_TEST(what_has_no_penalties_is_refused) {
+    put_blocks("blocks.yaml", 0.01, "");
+    small_expect("check blocks.yaml --set 'time={scheme: implicit, step: 1 ms, end: 1 s}'", 65,
+                 "penalty: this belongs to time.scheme: static, barrier, tied or none is wanted");
+    small_expect("check blocks.yaml --set 'time={end: 1 ms}'", 65, "penalty: this belongs to time.scheme: static");
+    small_expect("check blocks.yaml --set 'bodies.upper.method=mpm' --set 'grid.cell=2 mm'", 65,
+                 "penalty wants two bodies of method fem");
+    small_expect("check blocks.yaml --set contact.method=barrier --set 'contact.penalty=1 MPa/mm'", 65,
+                 "this belongs to method: penalty");
+    small_expect("check blocks.yaml --set 'contact.stiffness=1 MPa'", 65, "this belongs to method: barrier");
+    small_expect("check blocks.yaml --set 'contact.pairs=[{between: [lower, lower]}]'", 65,
+                 "contact of a body with itself is by barrier");
+    small_put("deep.yaml",
+              "brunt: 1\ndimension: 3\ntime: {scheme: static, steps: 1}\n"
+              "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\n"
+              "bodies: {cube: {method: fem, element: hex8, size: 1 mm, material: m, shape: {box: {min: [0, 0, 1 mm], "
+              "max: [2 mm, 2 mm, 2 mm]}}}}\n"
+              "boundaries: [{name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}]\n"
+              "contact: {method: penalty}\n");
+    small_expect("check deep.yaml", 65, "penalty: of two dimensions alone; in three barrier is wanted");
+}
+END_TEST
+
+// Mirrored, with the lower one moved in place of the upper, and not turned but by 0 degrees: the same forces.
+START_TEST(it_does_not_matter_which_body_moves) {
+    double sheared[3];
+    static const char *const how[] = {
+        "",
+        "--set 'boundaries[0]={name: base, body: upper, group: ymax, fix: [x, y]}' --set 'boundaries[1]={name: press, "
+        "body: lower, group: ymin, displacement: [free, 0.04 mm], table: [[0 s, 0], [0.5 s, 1]]}' --set "
+        "'boundaries[2]={name: shear, body: lower, group: ymin, displacement: [-0.02 mm, free], table: [[0.5 s, 0], [1 "
+        "s, 1]]}'",
+        "--set 'boundaries[2].displacement=[-0.02 mm, free]' --set 'bodies.upper.place=[{rotate: {angle: 0 deg}}]'"};
+    small_put(
+        "sheared.yaml",
+        "brunt: 1\ndimension: 2\ntime: {scheme: static, steps: 10}\nnewton: {tolerance: 1e-10}\n"
+        "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\nbodies:\n"
+        "  lower: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [-8 mm, 0], max: [8 mm, 6 "
+        "mm]}}}\n"
+        "  upper: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [-5 mm, 6 mm], max: [5 mm, "
+        "12 mm]}}}\n"
+        "boundaries:\n  - {name: base, body: lower, group: ymin, fix: [x, y]}\n"
+        "  - {name: press, body: upper, group: ymax, displacement: [free, -0.04 mm], table: [[0 s, 0], [0.5 s, 1]]}\n"
+        "  - {name: shear, body: upper, group: ymax, displacement: [0.02 mm, free], table: [[0.5 s, 0], [1 s, 1]]}\n"
+        "contact: {method: penalty, friction: 0.4}\noutput: {every: none, history: 0 s}\n"
+        "measures: {shear: {history: contact.lower-upper.force_x}, press: {history: contact.lower-upper.force_y}}\n");
+    for (int i = 0; i < 3; i++) {
+        char words[900];
+        snprintf(words, sizeof words, "run sheared.yaml -t 1 -q -o out%d %s", i, how[i]);
+        small_expect(words, 0, NULL);
+        char folder[8];
+        snprintf(folder, sizeof folder, "out%d", i);
+        json_t *summary = summary_of(folder), *m = json_object_get(summary, "measures");
+        sheared[i] = number_of(json_object_get(m, "shear"), "value");
+        ck_assert_double_lt(fabs(sheared[i]), 0.4 * number_of(json_object_get(m, "press"), "value"));
+        json_decref(summary);
+    }
+    ck_assert_double_gt(fabs(sheared[0]), 100);
+    ck_assert_double_eq_tol(sheared[1], sheared[0], 1e-7 * fabs(sheared[0]));
+    ck_assert_double_eq_tol(sheared[2], -sheared[0], 1e-7 * fabs(sheared[0]));
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("program_penalty");
+    TCase *tests = tcase_create("program_penalty");
+    tcase_add_checked_fixture(tests, small_folder_make, small_folder_remove);
+    tcase_set_timeout(tests, 0);
+    tcase_add_test(tests, stiffness_is_said_and_is_by_the_length_of_contacts);
+    tcase_add_test(tests, overlaps_push_apart_or_are_refused);
+    tcase_add_test(tests, too_soft_is_said);
+    tcase_add_test(tests, what_has_no_penalties_is_refused);
+    tcase_add_test(tests, it_does_not_matter_which_body_moves);
+    suite_add_tcase(suite, tests);
+    return suite_main(suite);
+}
+#else
+int main(void) { return 0; }
+#endif

@@ -1,0 +1,285 @@
+// Surfaces that may overlap: gaps with a sign, forces that go on through 0 and have a potential, how far a step may go.
+#include "contact/barrier/barrier_function.h"
+#include "contact/methods/gap_energy.h"
+#include "tests/support/suite.h"
+#include "tests/support/term_check.h"
+
+static const double K = 1e7, REACH = 0.06; // [Pa/m], [m]
+
+static brunt_barrier_pair *overlapping(barrier_case *c, int32_t a, int32_t b, double distance) {
+    brunt_barrier_pair *p = case_pair(c, a, b, distance, K);
+    p->energy = brunt_penalty_at, p->reach = REACH;
+    return p;
+}
+
+// Two polygons of n and m sides, the other 2 - deep above the one and `along` beside it.
+static barrier_case *two_disks(int n, int m, double along, double deep, double distance, double place[2]) {
+    static const double PI = 3.14159265358979323846;
+    barrier_case *c = case_begin(2);
+    double x[200][2];
+    for (int i = 0; i < n; i++)
+        x[i][0] = place[0] + cos(2 * PI * (i + 0.3) / n), x[i][1] = place[1] + sin(2 * PI * (i + 0.3) / n);
+    case_polygon(c, 0, (const double(*)[2])x, n);
+    for (int i = 0; i < m; i++)
+        x[i][0] = place[0] + along + cos(2 * PI * i / m), x[i][1] = place[1] + 2 - deep + sin(2 * PI * i / m);
+    case_polygon(c, 1, (const double(*)[2])x, m);
+    overlapping(c, 0, 1, distance);
+    return c;
+}
+
+// A point above and below a floor: nothing above the distance, k times how deep it is below, without a step at 0; lost
+// below the reach.
+START_TEST(pressure_is_by_depth) {
+    static const double floor[][2] = {{5, 0}, {-5, 0}, {0, -5}}, area = 0.02;
+    static const double distance[] = {0, 0.01};
+    for (int d = 0; d < 2; d++) {
+        barrier_case *c = case_begin(2);
+        uint64_t state = 1;
+        case_polygon(c, 0, floor, 3);
+        case_particle(c, (double[3]){0.3, 0, 0}, area, 1, 1, &state);
+        overlapping(c, 0, 1, distance[d]);
+        case_ready(c);
+        double *u = case_unknowns(c), *g = case_unknowns(c);
+        static const double at[] = {0.02, 0.005, 1e-18, 0, -1e-18, -0.005, -0.059, -0.061};
+        for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+            const brunt_term term = brunt_barrier_term(c->barrier);
+            const double deep = fmax(distance[d] - at[i], 0);
+            u[c->particle_node[0] * 2 + 1] = at[i];
+            case_look(c, u, NULL);
+            const double energy = case_energy(c, term, u);
+            if (at[i] < -REACH) {
+                ck_assert_double_infinite(energy);
+                continue;
+            }
+            ck_assert_double_le(fabs(energy - area * K / 2 * deep * deep), 1e-11 * energy);
+            case_gradient(c, term, u, g);
+            ck_assert_double_le(fabs(g[c->particle_node[0] * 2 + 1] + area * K * deep), 1e-11 * area * K * deep);
+            ck_assert_double_eq(g[c->particle_node[0] * 2], 0);
+        }
+        free(u), free(g), case_end(c);
+    }
+}
+END_TEST
+
+// A block with a notch and a wedge that fills it, a little more than it is wide: nodes within both its slopes and at
+// its foot, beside disks that overlap.
+static barrier_case *derivative_case(int which) {
+    double place[2] = {0.1, 0.2};
+    if (which < 2) return two_disks(24, 32, 0.2, 0.06, which ? 0.01 : 0, place);
+    static const double notched[][2] = {{-1, -1}, {1, -1}, {1, 0}, {0.4, 0.01}, {0, -0.5}, {-0.4, 0}, {-1, 0}};
+    static const double wedge[][2] = {{-0.012, -0.52}, {0.01, -0.51},  {0.25, -0.2},
+                                      {0.42, -0.03},   {-0.41, -0.02}, {-0.2, -0.26}};
+    barrier_case *c = case_begin(2);
+    case_polygon(c, 0, notched, 7), case_polygon(c, 1, wedge, 6);
+    overlapping(c, 0, 1, which == 3 ? 0.015 : 0);
+    return c;
+}
+
+START_TEST(derivatives_are_those_of_differences) {
+    for (int which = 0; which < 4; which++) {
+        barrier_case *c = derivative_case(which);
+        double *u = case_unknowns(c);
+        uint64_t state = 12;
+        c->pair[0].friction = 0.4, c->pair[0].slip_speed = 5;
+        case_ready(c);
+        for (int i = 0; i < c->nodes * 2; i++) u[i] = draw_between(&state, -1e-3, 1e-3);
+        check_term(c, brunt_barrier_term(c->barrier), u, 2e-8, true);
+        case_lag(c, u);
+        for (int i = 0; i < c->nodes * 2; i++) u[i] += draw_between(&state, -4e-4, 4e-4);
+        check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8, true);
+        ck_assert_int_eq(brunt_barrier_keep_slips(c->barrier, NULL), BRUNT_OK);
+        brunt_barrier_follow(c->barrier, true);
+        check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8, false);
+        free(u), case_end(c);
+    }
+}
+END_TEST
+
+// What pushes and rubs adds up to nothing; of what pushes, moments as well. A rigid motion of both stores nothing.
+START_TEST(forces_are_opposite) {
+    for (int which = 0; which < 4; which++) {
+        barrier_case *c = derivative_case(which);
+        double *u = case_unknowns(c), *g = case_unknowns(c), *moved = case_unknowns(c);
+        uint64_t state = 5;
+        c->pair[0].friction = 0.4, c->pair[0].slip_speed = 1e-3;
+        case_ready(c);
+        const brunt_term term = brunt_barrier_term(c->barrier), rubs = brunt_barrier_friction_term(c->barrier);
+        for (int friction = 0; friction < 2; friction++) {
+            double sum[3] = {0}, size = 0;
+            for (int i = 0; i < c->nodes * 2; i++) u[i] = draw_between(&state, -1e-3, 1e-3);
+            if (friction)
+                case_lag(c, u);
+            else
+                case_look(c, u, NULL);
+            case_gradient(c, friction ? rubs : term, u, g);
+            for (int32_t v = 0; v < c->vertices; v++) {
+                const double *f = &g[c->node[v] * 2], *d = &u[c->node[v] * 2];
+                sum[0] += f[0], sum[1] += f[1], size += fabs(f[0]) + fabs(f[1]);
+                sum[2] += (c->x[v][0] + d[0]) * f[1] - (c->x[v][1] + d[1]) * f[0];
+            }
+            ck_assert_double_gt(size, 0);
+            ck_assert_double_lt(hypot(sum[0], sum[1]), 1e-12 * size);
+            if (!friction) ck_assert_double_lt(fabs(sum[2]), 1e-12 * size);
+        }
+        case_look(c, u, NULL);
+        const double energy = case_energy(c, term, u), co = cos(0.3), si = sin(0.3);
+        for (int32_t v = 0; v < c->vertices; v++) {
+            const double *d = &u[c->node[v] * 2], x = c->x[v][0] + d[0], y = c->x[v][1] + d[1];
+            moved[c->node[v] * 2] = co * x - si * y + 0.7 - c->x[v][0];
+            moved[c->node[v] * 2 + 1] = si * x + co * y - 0.4 - c->x[v][1];
+        }
+        case_look(c, moved, NULL);
+        ck_assert_double_eq_tol(case_energy(c, term, moved), energy, 1e-11 * energy);
+        free(u), free(g), free(moved), case_end(c);
+    }
+}
+END_TEST
+
+// The same as its mirror image, with the bodies the other way round, and with rims numbered from another vertex on.
+START_TEST(order_and_mirror_do_not_matter) {
+    double energy[4];
+    for (int which = 0; which < 4; which++) {
+        const int mirrored = which == 1, swapped = which == 2, from = which == 3 ? 5 : 0;
+        barrier_case *of = derivative_case(0), *c = case_begin(2);
+        const double sign = mirrored ? -1 : 1;
+        for (int body = 0; body < 2; body++) {
+            double x[64][2];
+            int n = 0, own = swapped ? 1 - body : body;
+            for (int32_t v = 0; v < of->vertices; v++)
+                if (of->body[v] == own) x[n][0] = sign * of->x[v][0], x[n++][1] = of->x[v][1];
+            double y[64][2];
+            for (int i = 0; i < n; i++) memcpy(y[i], x[((mirrored ? n - i : i) + from) % n], sizeof y[i]);
+            case_polygon(c, body, (const double(*)[2])y, n);
+        }
+        overlapping(c, 0, 1, 0);
+        case_ready(c);
+        double *u = case_unknowns(c);
+        case_look(c, u, NULL);
+        energy[which] = case_energy(c, brunt_barrier_term(c->barrier), u);
+        ck_assert_double_gt(energy[0], 0);
+        ck_assert_double_eq_tol(energy[which], energy[0], 1e-12 * energy[0]);
+        free(u), case_end(c), case_end(of);
+    }
+}
+END_TEST
+
+// Right below a corner both sides are as near: each has half of it, and nothing pushes to one of them.
+START_TEST(corner_on_corner_is_straight) {
+    static const double roof[][2] = {{1, -0.25}, {0, 0}, {-1, -0.25}, {0, -2}},
+                        floor[][2] = {{0, -0.02}, {1, 0.23}, {0, 2}, {-1, 0.23}};
+    barrier_case *c = case_begin(2);
+    case_polygon(c, 0, roof, 4), case_polygon(c, 1, floor, 4);
+    overlapping(c, 0, 1, 0);
+    case_ready(c);
+    double *u = case_unknowns(c), *g = case_unknowns(c);
+    case_look(c, u, NULL);
+    case_gradient(c, brunt_barrier_term(c->barrier), u, g);
+    const double cosine = 1 / sqrt(1 + 0.0625), depth = 0.02 * cosine;
+    double area = 0;
+    for (int v = 0; v < c->vertices; v++)
+        if (v == 1 || v == 4) area += brunt_barrier_vertex_area(c->barrier, v) / 2;
+    double push = 0;
+    for (int v = 4; v < 8; v++) push += g[2 * v + 1];
+    for (int v = 0; v < 8; v++)
+        ck_assert_double_eq_tol(g[2 * v],
+                                -g[2 * (v == 0   ? 2
+                                        : v == 2 ? 0
+                                        : v == 5 ? 7
+                                        : v == 7 ? 5
+                                                 : v)],
+                                1e-12 * fabs(push));
+    ck_assert_double_eq_tol(-push, area * K * depth * cosine, 1e-12 * fabs(push));
+    free(u), free(g), case_end(c);
+}
+END_TEST
+
+// Beside a sharp corner, right before one face and behind the other's: outside. Within, the way out is over the nearer
+// face. Right on one, flush, nothing pushes.
+START_TEST(sharp_corners_have_an_outside) {
+    static const double wedge[][2] = {{0, 0}, {3, -0.4}, {3, 0.4}},
+                        place[][2] = {{0.2, 0.032}, {0.2, 0.02}, {0.2, -0.02}, {0.3, 0.04}};
+    const double slope = 0.4 / 3, cosine = 1 / sqrt(1 + slope * slope), area = 0.02;
+    for (int i = 0; i < 4; i++) {
+        barrier_case *c = case_begin(2);
+        uint64_t state = 1;
+        case_polygon(c, 0, wedge, 3);
+        case_particle(c, (double[3]){place[i][0], place[i][1], 0}, area, 1, 1, &state);
+        overlapping(c, 0, 1, 0);
+        case_ready(c);
+        double *u = case_unknowns(c), *g = case_unknowns(c);
+        const brunt_term term = brunt_barrier_term(c->barrier);
+        const double deep = fmax((slope * place[i][0] - fabs(place[i][1])) * cosine, 0);
+        case_look(c, u, NULL);
+        case_gradient(c, term, u, g);
+        ck_assert_double_le(fabs(case_energy(c, term, u) - area * K / 2 * deep * deep), 1e-12);
+        const double up = g[2 * c->particle_node[0] + 1];
+        ck_assert(i == 1 ? up < 0 : i == 2 ? up > 0 : fabs(up) < 1e-9);
+        free(u), free(g), case_end(c);
+    }
+}
+END_TEST
+
+// However far a way goes, no point gets deeper than it may be within one part of it; beyond that energies are infinite.
+START_TEST(steps_are_short_beside_the_reach) {
+    double place[2] = {0, 0};
+    barrier_case *c = two_disks(24, 32, 0.1, -0.03, 0, place);
+    case_ready(c);
+    double *u = case_unknowns(c), *p = case_unknowns(c);
+    const brunt_term term = brunt_barrier_term(c->barrier);
+    for (int32_t v = 0; v < c->vertices; v++)
+        if (c->body[v] == 1) p[2 * c->node[v] + 1] = -1;
+    case_look(c, u, p);
+    const double part = case_limit(c, u, p, 1);
+    ck_assert_double_ge(part, REACH / 2);
+    ck_assert_double_lt(part, 0.03 + REACH);
+    for (double way = 0; way < 0.4; way += 0.01) { // from touching on ever more, then infinite
+        for (int32_t i = 0; i < c->nodes * 2; i++) u[i] = way * p[i];
+        case_look(c, u, NULL);
+        const double energy = case_energy(c, term, u);
+        ck_assert(way < 0.03 ? energy == 0 : way > 0.04 && way < 0.08 ? energy > 0 && energy < INFINITY : true);
+        if (way > 0.1 && way < 0.14) ck_assert_double_infinite(energy);
+    }
+    free(u), free(p), case_end(c);
+}
+END_TEST
+
+START_TEST(threads_give_the_same_bits) {
+    double *first = NULL;
+    for (int threads = 1; threads <= 5; threads++) {
+        double place[2] = {3, -7};
+        barrier_case *c = two_disks(96, 120, 0.02, 0.02, 0.004, place);
+        c->threads = threads;
+        case_ready(c);
+        double *u = case_unknowns(c), *g = case_unknowns(c);
+        case_look(c, u, NULL);
+        case_gradient(c, brunt_barrier_term(c->barrier), u, g);
+        if (!first) first = case_unknowns(c), memcpy(first, g, (size_t)c->nodes * 2 * sizeof *g);
+        ck_assert_mem_eq(first, g, (size_t)c->nodes * 2 * sizeof *g);
+        free(u), free(g), case_end(c);
+    }
+    free(first);
+}
+END_TEST
+
+// 1 / E* is the sum of those of both; a plane's is 0.
+START_TEST(stiffness_is_twenty_of_what_gives) {
+    ck_assert_double_eq_tol(brunt_penalty_default_stiffness(3e6, 6e6, 0.01), 20 * 2e6 / 0.01, 1);
+    ck_assert_double_eq_tol(brunt_penalty_default_stiffness(3e6, INFINITY, 0.01), 20 * 3e6 / 0.01, 1);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("penalty");
+    TCase *tests = tcase_create("penalty");
+    tcase_add_test(tests, pressure_is_by_depth);
+    tcase_add_test(tests, derivatives_are_those_of_differences);
+    tcase_add_test(tests, forces_are_opposite);
+    tcase_add_test(tests, order_and_mirror_do_not_matter);
+    tcase_add_test(tests, corner_on_corner_is_straight);
+    tcase_add_test(tests, sharp_corners_have_an_outside);
+    tcase_add_test(tests, steps_are_short_beside_the_reach);
+    tcase_add_test(tests, threads_give_the_same_bits);
+    tcase_add_test(tests, stiffness_is_twenty_of_what_gives);
+    suite_add_tcase(suite, tests);
+    return suite_main(suite);
+}
