@@ -142,10 +142,9 @@ typedef int brunt_minimise(struct brunt_implicit *m, brunt_newton_report *report
 int brunt_static_rub(struct brunt_implicit *m, brunt_minimise *minimise, brunt_newton_report *report,
                      brunt_error *error);
 // --- static_penalty.c
-// Whether the stiffness of what may overlap is a guess yet; what contacts tell of it at u, the end of a load step.
-// *again: it is another, for which the step is to be solved again.
+// Whether the stiffness of what may overlap is a guess yet; takes it from contacts at u, the end of a load step.
 bool brunt_static_guesses(const struct brunt_implicit *m);
-int brunt_static_see(brunt_world *world, bool *again, brunt_error *error);
+int brunt_static_see(struct brunt_implicit *m, brunt_error *error);
 // --- static_step.c
 // Records the work of forces that are unbalanced where the step begins: particles on a new grid bring them, the
 // transfer's; meshes only have them where a run begins, and what they settle by is lost to the scheme.

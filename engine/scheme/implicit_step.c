@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "scheme/implicit.h"
 
+static const double ROUGHLY = 1e-2; // of the forces that act: what a solution leaves that is looked at alone
+
 // ------------------------------------------------------------------------------------------ the aim
 
 void brunt_implicit_ask(const struct brunt_implicit *m, brunt_trial_part part) {
@@ -368,15 +370,23 @@ static int find_tractions(brunt_world *world, double dt, brunt_newton_report *re
     return status;
 }
 
+// How long contacts are, roughly, by a solution with the stiffness that is guessed.
+static int look_ahead(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const double asked = m->options.tolerance;
+    m->options.tolerance = fmax(asked, ROUGHLY);
+    const int status = solve_step(world, dt, report, error);
+    m->options.tolerance = asked;
+    return status ? status : brunt_static_see(m, error);
+}
+
 static int try_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     *report = (brunt_newton_report){.result = BRUNT_NEWTON_BROKEN, .residual_dof = -1};
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
     int status = find_tractions(world, dt, report, error);
+    if (!status && brunt_static_guesses(m)) status = look_ahead(world, dt, report, error);
     if (!status) status = solve_step(world, dt, report, error);
-    bool again = false;
-    if (!status && brunt_static_guesses(m)) status = brunt_static_see(world, &again, error);
-    if (!status && again) status = solve_step(world, dt, report, error);
     bool settled = false; // pressures are those that friction went by: a first correction is below the tolerance
     for (int k = 1; !status && m->rubs && !m->still && !settled && k < m->friction_iterations; k++) {
         if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;

@@ -1,6 +1,6 @@
 // What load steps take for the stiffness of surfaces that may overlap, where a scene does not say: 20 E* / a, with a
 // half the mean length of contacts. How long those are is not known before they are there: the first load step in which
-// anything touches is solved with the shortest edge for a, and once more with what contacts have told.
+// anything touches is solved roughly with the shortest edge for a, then with what contacts have told.
 #include "base/error.h"
 #include "scheme/implicit.h"
 
@@ -8,18 +8,14 @@ bool brunt_static_guesses(const struct brunt_implicit *m) {
     return m->still && m->contact.reach > 0 && !(m->contact.penalty > 0) && !m->contact.seen;
 }
 
-int brunt_static_see(brunt_world *world, bool *again, brunt_error *error) {
-    struct brunt_implicit *m = world->plan.implicit;
+int brunt_static_see(struct brunt_implicit *m, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
     brunt_barrier_report unused;
-    *again = false;
     if (m->rubs && brunt_barrier_lag(c->barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
     if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, &unused, &c->forces, error))
         return BRUNT_FAILED;
     const double width = brunt_implicit_contact_width(c);
-    if (!(width > 0)) return BRUNT_OK;
-    *again = width != c->width;
-    brunt_implicit_contact_widen(c, width);
+    if (width > 0) brunt_implicit_contact_widen(c, width);
     return BRUNT_OK;
 }
 
@@ -46,6 +42,6 @@ void brunt_implicit_kept_set(const brunt_plan *plan, const double *from) {
     brunt_implicit_contact *c = keeper(plan);
     if (!c) return;
     brunt_barrier_kept_set(c->barrier, from);
-    const double width = c->reach > 0 ? from[brunt_barrier_kept_count(c->barrier)] : 0;
-    if (width > 0) brunt_implicit_contact_widen(c, width);
+    const double kept = c->reach > 0 ? from[brunt_barrier_kept_count(c->barrier)] : 0;
+    if (kept > 0) brunt_implicit_contact_widen(c, kept);
 }
