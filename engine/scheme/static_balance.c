@@ -8,6 +8,8 @@
 
 #include "scheme/implicit.h"
 
+static const double RESOLVED = 1e3; // times what Newton's method may leave of all forces
+
 typedef struct body_sum {
     double left[3], all; // [N] sum over free components; sizes of contact, loads and reactions, node by node
 } body_sum;
@@ -24,40 +26,55 @@ static void add_nodes(const struct brunt_implicit *m, int32_t begin, int32_t end
     }
 }
 
-static double part(const double left[3], double all) {
-    return all > 0 ? sqrt(left[0] * left[0] + left[1] * left[1] + left[2] * left[2]) / all : 0;
+static double length(const double left[3]) { return sqrt(left[0] * left[0] + left[1] * left[1] + left[2] * left[2]); }
+
+static double part(const double left[3], double all) { return all > 0 ? length(left) / all : 0; }
+
+// What acts on body k, of elements, then of points; BRUNT_NONE: it is told with another, that it is tied to.
+static int sum_body(const struct brunt_implicit *m, int k, body_sum *sum) {
+    const brunt_unknowns *u = &m->unknowns;
+    const brunt_bodies *bodies = &m->world->bodies;
+    const int i = k - bodies->fem_count;
+    *sum = (body_sum){.all = 0};
+    if (i < 0) {
+        add_nodes(m, u->base[k], u->base[k] + bodies->fem[k].node_count, sum);
+        return bodies->fem[k].index;
+    }
+    if (u->tie[i] != i) return BRUNT_NONE;
+    for (int j = i; j < bodies->mpm_count; j++)
+        if (u->tie[j] == i) add_nodes(m, u->grid_base[j], u->grid_base[j + 1], sum);
+    return bodies->mpm[i].index;
 }
 
-static void take_body(struct brunt_implicit *m, int body, const body_sum *sum, body_sum *whole) {
-    const double share = part(sum->left, sum->all);
-    for (int a = 0; a < 3; a++) whole->left[a] += sum->left[a];
-    whole->all += sum->all;
+// `act`: what forces on all bodies, or those within them, add up to; what Newton's method leaves is beside that. A body
+// with next to no forces, a loose disk in a packing, has none that it resolves: what is left of them is told beside
+// all.
+static void take_body(struct brunt_implicit *m, int body, const body_sum *sum, double act) {
+    const double all = sum->all < RESOLVED * m->options.tolerance * act ? act : sum->all;
+    const double share = act > m->scale.rounding ? part(sum->left, all) : 0;
     if (share <= m->balance.body) return;
     m->balance.body = share, m->balance.worst = body;
 }
 
 void brunt_static_take_balance(struct brunt_implicit *m) {
-    const brunt_unknowns *u = &m->unknowns;
-    const brunt_bodies *bodies = &m->world->bodies;
-    const brunt_fold *fold = brunt_unknowns_fold(u);
-    body_sum whole = {.all = 0};
+    const int count = m->world->bodies.fem_count + m->world->bodies.mpm_count;
+    const brunt_fold *fold = brunt_unknowns_fold(&m->unknowns);
+    body_sum whole = {.all = 0}, sum;
     m->balance = (brunt_balance){.worst = -1};
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
         m->field.step[k] = m->field.gradient[k] - m->field.load[k];
-    if (fold) brunt_fold_gather(fold, u->dim, m->field.step);
-    for (int k = 0; k < bodies->fem_count; k++) {
-        body_sum sum = {.all = 0};
-        add_nodes(m, u->base[k], u->base[k] + bodies->fem[k].node_count, &sum);
-        take_body(m, bodies->fem[k].index, &sum, &whole);
+    if (fold) brunt_fold_gather(fold, m->unknowns.dim, m->field.step);
+    for (int k = 0; k < count; k++) {
+        if (sum_body(m, k, &sum) < 0) continue;
+        for (int a = 0; a < 3; a++) whole.left[a] += sum.left[a];
+        whole.all += sum.all;
     }
-    for (int i = 0; i < bodies->mpm_count; i++) {
-        body_sum sum = {.all = 0};
-        if (u->tie[i] != i) continue;
-        for (int k = i; k < bodies->mpm_count; k++)
-            if (u->tie[k] == i) add_nodes(m, u->grid_base[k], u->grid_base[k + 1], &sum);
-        take_body(m, bodies->mpm[i].index, &sum, &whole);
+    const double act = fmax(whole.all, m->scale.least);
+    for (int k = 0; k < count; k++) {
+        const int body = sum_body(m, k, &sum);
+        if (body >= 0) take_body(m, body, &sum, act);
     }
-    m->balance.all = part(whole.left, whole.all);
+    m->balance.all = act > m->scale.rounding ? part(whole.left, whole.all) : 0;
 }
 
 bool brunt_world_balance(const brunt_world *world, brunt_balance *balance) {

@@ -284,6 +284,30 @@ START_TEST(links_are_told) {
 }
 END_TEST
 
+// A block that only just touches, and one that is pressed: of the loose one there is next to nothing, and all of it
+// would be left. It is told beside what acts on all.
+START_TEST(loose_bodies_balance) {
+    double body[ROWS];
+    static const char loose[] =
+        "brunt: 1\ndimension: 2\ntime: {scheme: static, steps: 3}\nnewton: {tolerance: 1e-9}\n"
+        "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\nbodies:\n"
+        "  base: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [0, 0], max: [40 mm, 4 "
+        "mm]}}}\n"
+        "  block: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [3 mm, 4.009 mm], max: [7 "
+        "mm, 8.009 mm]}}}\n"
+        "  loose: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [30 mm, 4.0099 mm], max: "
+        "[34 mm, 8.009 mm]}}}\n"
+        "boundaries:\n  - {body: base, group: ymin, fix: [x, y]}\n"
+        "  - {name: press, body: block, group: ymax, displacement: [0, -0.02 mm], table: [[0 s, 0], [1 s, 1]]}\n"
+        "contact: {method: barrier, distance: 10 um}\noutput: {every: none, history: 0 s}\n";
+    small_put("loose.yaml", loose);
+    small_expect("run loose.yaml -t 1 -q -o loose", 0, NULL);
+    const int rows = read_column("loose", "balance.body", body);
+    for (int r = 0; r < rows; r++) ck_assert_double_le(body[r], 1e-6);
+    ck_assert_double_gt(body[rows - 1], 0);
+}
+END_TEST
+
 // Eight disks in a hexagonal lattice: what presses changes with friction everywhere. Taken anew from round to round
 // alone, it wants 100 iterations and more in a load step; with friction that follows it, 60 are plenty.
 START_TEST(hexagonal_packings_settle) {
@@ -414,6 +438,7 @@ int main(void) {
     tcase_add_test(tests, wedge_slides_below_its_slope_alone);
     tcase_add_test(tests, what_slides_away_is_70);
     tcase_add_test(tests, links_are_told);
+    tcase_add_test(tests, loose_bodies_balance);
     tcase_add_test(tests, hexagonal_packings_settle);
     tcase_add_test(tests, hard_packings_settle_or_say_why);
     tcase_add_test(tests, load_is_turned_round);
