@@ -368,16 +368,16 @@ bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values)
 }
 
 void brunt_implicit_contact_widen(brunt_implicit_contact *c, double width) {
-    c->width = width, c->seen = true;
+    c->width = width > 0 ? width : c->reach / HALF, c->seen = width > 0;
     for (int32_t q = 0; q < c->plane_count; q++)
         if (c->plane[q].reach > 0) c->plane[q].stiffness = penalty_of(c, c->plane_modulus[q], INFINITY);
 }
 
-double brunt_implicit_contact_width(const brunt_implicit_contact *c) {
+double brunt_implicit_contact_width(const brunt_implicit_contact *c, const brunt_barrier_forces *forces) {
     double length = 0;
     int32_t count = 0;
-    for (int32_t k = 0; k < c->forces.count; k++) {
-        const brunt_barrier_force *f = &c->forces.force[k];
+    for (int32_t k = 0; k < forces->count; k++) {
+        const brunt_barrier_force *f = &forces->force[k];
         if (!(fabs(f->normal[0]) + fabs(f->normal[1]) > 0)) continue;
         length += f->area, count++;
     }

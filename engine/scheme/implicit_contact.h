@@ -61,9 +61,9 @@ int brunt_implicit_contact_check(brunt_implicit_contact *c, brunt_world *world, 
                                  bool given, brunt_error *error);
 // Aborts where surfaces, pairs and planes are not of what there is: so many bodies, boundaries and pairs of the world.
 void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int boundaries, int pairs);
-// [m] Half the mean length of contacts by the forces that were taken last, no less than the shortest edge; 0: nothing
-// is in contact. What may overlap is as stiff from then on as goes with it, once it is told so.
-double brunt_implicit_contact_width(const brunt_implicit_contact *c);
+// [m] Half the mean length of contacts by their forces, no less than the shortest edge; 0: nothing is in contact. What
+// may overlap is as stiff from then on as goes with it, once it is told so; 0: a guess again.
+double brunt_implicit_contact_width(const brunt_implicit_contact *c, const brunt_barrier_forces *forces);
 void brunt_implicit_contact_widen(brunt_implicit_contact *c, double width);
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);
 // Places and weights of a step, whose unknowns have numbers. BRUNT_OK, or BRUNT_FAILED.

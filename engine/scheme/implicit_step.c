@@ -370,14 +370,14 @@ static int find_tractions(brunt_world *world, double dt, brunt_newton_report *re
     return status;
 }
 
-// How long contacts are, roughly, by a solution with the stiffness that is guessed.
-static int look_ahead(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
+// How long contacts are, roughly, by a solution with the stiffness that is guessed; where that fails, it is kept.
+static void look_ahead(brunt_world *world, double dt, brunt_newton_report *report) {
     struct brunt_implicit *m = world->plan.implicit;
     const double asked = m->options.tolerance;
+    brunt_error vain = {.id = -1};
     m->options.tolerance = fmax(asked, ROUGHLY);
-    const int status = solve_step(world, dt, report, error);
+    if (!solve_step(world, dt, report, &vain)) brunt_static_see(m, &vain);
     m->options.tolerance = asked;
-    return status ? status : brunt_static_see(m, error);
 }
 
 static int try_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
@@ -385,7 +385,7 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     *report = (brunt_newton_report){.result = BRUNT_NEWTON_BROKEN, .residual_dof = -1};
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
     int status = find_tractions(world, dt, report, error);
-    if (!status && brunt_static_guesses(m)) status = look_ahead(world, dt, report, error);
+    if (!status && brunt_static_guesses(m)) look_ahead(world, dt, report);
     if (!status) status = solve_step(world, dt, report, error);
     bool settled = false; // pressures are those that friction went by: a first correction is below the tolerance
     for (int k = 1; !status && m->rubs && !m->still && !settled && k < m->friction_iterations; k++) {
@@ -450,6 +450,7 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     brunt_newton_counts sum = {.least_gap = INFINITY, .least_part = INFINITY};
     brunt_newton_report report;
     const int own = world->timing.pass;
+    const bool guesses = brunt_static_guesses(m);
     int status = BRUNT_OK;
     double dt = step->dt;
     m->team = (brunt_team){.threads = world->settings.threads, .timer = brunt_pass_timer(&world->timing)};
@@ -467,6 +468,7 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
         brunt_pass_begin(&world->timing, own);
     }
     sum.iterations_worst = sum.iterations;
+    if (status && guesses) brunt_implicit_contact_widen(&m->contact, 0);
     if (status) return withdraw(world, step->dt, &sum, &report, error);
     balance_sums(m);
     sum.steps = 1;

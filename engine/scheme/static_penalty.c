@@ -11,12 +11,14 @@ bool brunt_static_guesses(const struct brunt_implicit *m) {
 int brunt_static_see(struct brunt_implicit *m, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
     brunt_barrier_report unused;
-    if (m->rubs && brunt_barrier_lag(c->barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
-    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, &unused, &c->forces, error))
-        return BRUNT_FAILED;
-    const double width = brunt_implicit_contact_width(c);
+    brunt_barrier_forces forces = {.count = 0};
+    int status = m->rubs ? brunt_barrier_lag(c->barrier, &m->team, m->field.u, error) : BRUNT_OK;
+    if (!status)
+        status = brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, &unused, &forces, error);
+    const double width = status ? 0 : brunt_implicit_contact_width(c, &forces);
     if (width > 0) brunt_implicit_contact_widen(c, width);
-    return BRUNT_OK;
+    brunt_barrier_forces_free(&forces);
+    return status;
 }
 
 // ------------------------------------------------------------------------------------------ of the state

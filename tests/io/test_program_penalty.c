@@ -78,6 +78,26 @@ START_TEST(stiffness_is_said_and_is_by_the_length_of_contacts) {
 }
 END_TEST
 
+static char *hash_of(const char *folder) {
+    json_t *summary = summary_of(folder);
+    char *hash = strdup(json_string_value(json_object_get(summary, "state_hash")));
+    json_decref(summary);
+    return hash;
+}
+
+// A first step that fails leaves nothing of what contacts have told on its way: what goes on from there, of more
+// iterations, is the same as what begins with them.
+START_TEST(a_step_that_fails_tells_nothing) {
+    put_blocks("blocks.yaml", 0.004, "");
+    small_expect("run blocks.yaml -t 1 -q -o whole", 0, NULL);
+    small_expect("run blocks.yaml -t 1 -o legs --set newton.cut=0 --set newton.iterations=1", 70, NULL);
+    small_expect("run blocks.yaml -t 1 -q -o legs --resume", 0, NULL);
+    char *whole = hash_of("whole"), *legs = hash_of("legs");
+    ck_assert_str_eq(whole, legs);
+    free(whole), free(legs);
+}
+END_TEST
+
 // What overlaps is pushed apart, and that is said; so deep that the way out is not known, it is refused.
 START_TEST(overlaps_push_apart_or_are_refused) {
     put_blocks("blocks.yaml", -0.01, soft);
@@ -171,6 +191,7 @@ int main(void) {
     tcase_add_checked_fixture(tests, small_folder_make, small_folder_remove);
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, stiffness_is_said_and_is_by_the_length_of_contacts);
+    tcase_add_test(tests, a_step_that_fails_tells_nothing);
     tcase_add_test(tests, overlaps_push_apart_or_are_refused);
     tcase_add_test(tests, too_soft_is_said);
     tcase_add_test(tests, what_has_no_penalties_is_refused);
