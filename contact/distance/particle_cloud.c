@@ -14,7 +14,7 @@
 // to work in.
 enum { X = 0, B = 3, VOLUME = 9, ALONG = 10, ROWS = 11, LANES = 8 };
 
-static int make_room(brunt_cloud *cloud, int count, brunt_error *error) {
+static int set_capacity(brunt_cloud *cloud, int count, brunt_error *error) {
     cloud->stride = ((size_t)count + LANES - 1) / LANES * LANES;
     cloud->count = 0;
     return BRUNT_CAPACITY_IN(cloud->data, cloud->bytes, ROWS * cloud->stride, 0, "numbers of particles about a node",
@@ -66,7 +66,7 @@ int brunt_cloud_gather(brunt_body *body, int32_t slot, int node, brunt_cloud *cl
     const int run_count = brunt_extent_runs(body, slot, node, runs);
     int count = 0;
     for (int q = 0; q < run_count; q++) count += runs[q].count;
-    if (make_room(cloud, count, error)) return BRUNT_FAILED;
+    if (set_capacity(cloud, count, error)) return BRUNT_FAILED;
     brunt_particles *p = &body->particles;
     real *const *x = brunt_field(p, BRUNT_FIELD_position);
     double at[3];
@@ -90,7 +90,7 @@ int brunt_cloud_gather(brunt_body *body, int32_t slot, int node, brunt_cloud *cl
     return BRUNT_OK;
 }
 
-int brunt_cloud_points(brunt_cloud *cloud, int count, brunt_error *error) { return make_room(cloud, count, error); }
+int brunt_cloud_points(brunt_cloud *cloud, int count, brunt_error *error) { return set_capacity(cloud, count, error); }
 
 void brunt_cloud_point(brunt_cloud *cloud, const double x[3]) {
     double *to = cloud->data + cloud->count++;
