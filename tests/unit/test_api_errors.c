@@ -166,7 +166,7 @@ START_TEST(enumerators) {
     REFUSED(def.kernel = (brunt_kernel)4, "grid.kernel");
     REFUSED(def.kernel = (brunt_kernel)0, "grid.kernel");
     REFUSED(def.transfer = (brunt_transfer)3, "grid.transfer");
-    REFUSED(def.contact.method = (brunt_contact_method)5, "contact.method: there is no choice 5");
+    REFUSED(def.contact.method = (brunt_contact_method)6, "contact.method: there is no choice 6");
     REFUSED(def.scheme = (brunt_scheme)3, "time.scheme: there is no choice 3");
     REFUSED(def.contact.method = (brunt_contact_method)-1, "contact.method: there is no choice -1");
     REFUSED(def.contact.form = (brunt_augury_form)4, "contact.form: there is no choice 4");
