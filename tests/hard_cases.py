@@ -128,8 +128,9 @@ def main():
     if sys.argv[1] == "check":
         check(rows)
     else:
+        text = page(rows)  # before the page is opened: what is missing leaves it as it is
         with open(PAGE, "w", encoding="utf-8") as file:
-            file.write(page(rows))
+            file.write(text)
 
 
 main()

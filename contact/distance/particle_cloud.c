@@ -154,39 +154,44 @@ void brunt_cloud_gradient(const brunt_cloud *cloud, const brunt_grid *grid, doub
 
 // ------------------------------------------------------------------------------------------------------------ extents
 
-// x . n of each, plus sqrt(n . B n) where their reach counts, in its row; the greatest.
-static double extents(const brunt_cloud *cloud, bool reach, const double n[3]) {
+// x . n of each, plus sqrt(n . B n) where their reach counts, in its row.
+static void take_extents(const brunt_cloud *cloud, bool reach, const double n[3], double *restrict along) {
     const size_t stride = cloud->stride;
     const double *restrict x = cloud->data, *restrict y = x + stride, *restrict z = x + 2 * stride,
                            *restrict b = x + B * stride;
-    double *restrict along = cloud->data + ALONG * stride;
     const double n0 = n[0], n1 = n[1], n2 = n[2], xx = n0 * n0, yy = n1 * n1, zz = n2 * n2, yz = 2 * n1 * n2,
                  xz = 2 * n0 * n2, xy = 2 * n0 * n1;
-    double greatest = -INFINITY;
     if (!reach) {
-#pragma omp simd reduction(max : greatest)
-        for (int i = 0; i < cloud->count; i++) {
-            along[i] = x[i] * n0 + y[i] * n1 + z[i] * n2;
-            greatest = along[i] > greatest ? along[i] : greatest;
-        }
-        return greatest;
+#pragma omp simd
+        for (int i = 0; i < cloud->count; i++) along[i] = x[i] * n0 + y[i] * n1 + z[i] * n2;
+        return;
     }
-#pragma omp simd reduction(max : greatest)
+#pragma omp simd
     for (int i = 0; i < cloud->count; i++) {
         const double *c = b + i;
         const double square = c[0] * xx + c[stride] * yy + c[2 * stride] * zz + c[3 * stride] * yz +
                               c[4 * stride] * xz + c[5 * stride] * xy;
         along[i] = x[i] * n0 + y[i] * n1 + z[i] * n2 + sqrt(square > 0 ? square : 0);
-        greatest = along[i] > greatest ? along[i] : greatest;
     }
+}
+
+// The greatest of a row, which is filled up with what is less than all.
+static double greatest_of(const brunt_cloud *cloud, double *along) {
+    double most[LANES], greatest = -INFINITY;
+    for (size_t i = (size_t)cloud->count; i < cloud->stride; i++) along[i] = -INFINITY;
+    for (int k = 0; k < LANES; k++) most[k] = -INFINITY;
+    for (size_t i = 0; i < cloud->stride; i += LANES)
+        for (int k = 0; k < LANES; k++) most[k] = along[i + (size_t)k] > most[k] ? along[i + (size_t)k] : most[k];
+    for (int k = 0; k < LANES; k++) greatest = most[k] > greatest ? most[k] : greatest;
     return greatest;
 }
 
 double brunt_cloud_extent(const brunt_cloud *cloud, bool reach, const double n[3], double farthest[3]) {
     for (int a = 0; a < 3; a++) farthest[a] = 0;
-    const double greatest = extents(cloud, reach, n);
     const size_t stride = cloud->stride;
-    const double *along = cloud->data + ALONG * stride;
+    double *along = cloud->data + ALONG * stride;
+    take_extents(cloud, reach, n, along);
+    const double greatest = greatest_of(cloud, along);
     int i = 0;
     while (i < cloud->count && along[i] != greatest) i++;
     if (i == cloud->count) return -INFINITY;

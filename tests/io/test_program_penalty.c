@@ -172,7 +172,7 @@ START_TEST(it_does_not_matter_which_body_moves) {
         char words[900];
         snprintf(words, sizeof words, "run sheared.yaml -t 1 -q -o out%d %s", i, how[i]);
         small_expect(words, 0, NULL);
-        char folder[8];
+        char folder[16];
         snprintf(folder, sizeof folder, "out%d", i);
         json_t *summary = summary_of(folder), *m = json_object_get(summary, "measures");
         sheared[i] = number_of(json_object_get(m, "shear"), "value");
