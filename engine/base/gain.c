@@ -6,7 +6,8 @@
 
 enum { WINDOW_PHASES = 32, FIRST_SHARED = 4 };
 static const double WINDOW = 5e-3, WHOLE_WINDOW = 50e-3; // [s] of so many phases at least; of how many ever
-static const double PAUSE = 100;                         // over what the last window took
+static const double MEMORY = 0.1;                        // [s] that the way in use is known by
+static const double FIRST_PAUSE = 12, PAUSE = 100;       // until the other way is tried, over what a trial took
 
 // Open addressing: where a task is, or is to be; -1 when the table is full.
 static int32_t place_of(const brunt_gain *gain, brunt_task_fn *task) {
@@ -29,14 +30,22 @@ brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task,
     return choice;
 }
 
-// After a window of phases run one way: that way's rate, and how the next are run.
+static double rate(const brunt_gain_way *way) { return way->taken / way->expected; }
+
+// After a window of phases run one way: how the next are run. One window may have met a stop of the machine: the way in
+// use is known by the last of them together, and one that has just been taken is soon asked again.
 static void decide(brunt_gain_size *s, double now) {
-    s->rate[s->together] = s->taken / s->expected;
+    brunt_gain_way *own = &s->ways[s->together], *other = &s->ways[!s->together];
+    const double fades = s->trial ? 0 : MEMORY / (MEMORY + s->taken);
+    own->expected = fades * own->expected + s->expected;
+    own->taken = fades * own->taken + s->taken;
     if (s->trial) {
-        s->together = s->rate[1] < s->rate[0];
-        s->next = now + PAUSE * s->taken;
+        const bool stays = rate(own) >= rate(other);
+        s->pause = stays && s->pause > 0 ? fmin(2 * s->pause, PAUSE) : FIRST_PAUSE;
+        s->next = now + s->pause * s->taken;
+        s->together ^= stays;
         s->trial = false;
-    } else if (now >= s->next) {
+    } else if (now >= s->next || (other->expected > 0 && rate(own) > rate(other))) { // time, or reason to
         s->together = !s->together;
         s->trial = true;
     }

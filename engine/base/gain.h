@@ -10,14 +10,18 @@
 
 enum { BRUNT_GAIN_TASKS = 512, BRUNT_GAIN_SIZES = 16 };
 
+typedef struct brunt_gain_way {
+    double expected, taken; // [s] as below, of the last phases run so
+} brunt_gain_way;
+
 // Phases of about the same work, sizes a factor of two apart from a microsecond on.
 typedef struct brunt_gain_size {
     bool together, known;   // how they are run now; that this is not the guess that all begins with
     bool trial;             // that this is the way not chosen
     int32_t phases;         // since that was last decided
     double expected, taken; // [s] work in them, and wall clock
-    double rate[2];         // taken over expected: on one thread, together
-    double next;            // [s] when the other way is tried again
+    brunt_gain_way ways[2]; // on one thread, together
+    double pause, next;     // over what a trial took, until the other way is tried again; when that is [s]
 } brunt_gain_size;
 
 // Zeroed at first.

@@ -82,6 +82,33 @@ START_TEST(machines_change) {
 }
 END_TEST
 
+// A quiet machine that stops now and then for some milliseconds, whatever runs: no reason to give up a thread for long.
+START_TEST(pauses_of_the_machine_are_borne) {
+    static const double some[] = {70e-6, 500e-6, 2e-3, 11e-3};
+    for (int k = 0; k < 4; k++) {
+        brunt_gain gain = {0};
+        double now = 0, taken = 0, best = 0, stop = 0.1;
+        uint64_t random = 1;
+        while (now < 120) {
+            const brunt_gain_choice choice = brunt_gain_choose(&gain, task, 100);
+            const double shared = phase_time(&quiet, true, some[k]);
+            double one = phase_time(&quiet, choice.together, some[k]);
+            best += shared;
+            taken += one;
+            if (now >= stop) {
+                random = random * 6364136223846793005u + 1442695040888963407u;
+                stop = now + 0.6 * (double)(random >> 40) / (1 << 24);
+                one += 20e-3;
+            }
+            now += one;
+            brunt_gain_learn(&gain, &choice, task, 100, some[k], one, now);
+        }
+        printf("  %.1e s: %.3f of two threads\n", some[k], taken / best);
+        ck_assert_double_le(taken, 1.06 * best);
+    }
+}
+END_TEST
+
 // One phase in thirty waits ten milliseconds for a thread that was left out: the mean counts, not most.
 START_TEST(rare_waits_count) {
     brunt_gain gain = {0};
@@ -142,6 +169,17 @@ static void mark(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
+// Before anything is known of it, a phase of some microseconds is not shared and a longer one is.
+START_TEST(guesses_go_by_the_work) {
+    for (int k = 0; k < SIZES; k++) {
+        brunt_gain gain = {0};
+        const brunt_gain_choice unknown = brunt_gain_choose(&gain, task, 100);
+        brunt_gain_learn(&gain, &unknown, task, 100, sizes[k], sizes[k], 0);
+        ck_assert_int_eq(brunt_gain_choose(&gain, task, 100).together, sizes[k] > 15e-6);
+    }
+}
+END_TEST
+
 // Phases that are really run, as the choice changes: each unit once.
 START_TEST(each_unit_is_run_once) {
     enum { UNITS = 5000, PHASES = 4000 };
@@ -165,9 +203,11 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, the_quicker_way_is_found);
     tcase_add_test(tests, machines_change);
+    tcase_add_test(tests, pauses_of_the_machine_are_borne);
     tcase_add_test(tests, rare_waits_count);
     tcase_add_test(tests, costs_survive_a_pause);
     tcase_add_test(tests, tasks_are_told_apart);
+    tcase_add_test(tests, guesses_go_by_the_work);
     tcase_add_test(tests, each_unit_is_run_once);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
