@@ -2,6 +2,7 @@
 #include "tests/support/suite.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -169,6 +170,69 @@ static void mark(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
+typedef struct shares {
+    int8_t owner[64]; // the worker that a unit was run by, -1: none
+    int times[64];
+    int64_t first[8]; // unit of each worker
+} shares;
+
+static void note(void *context, int64_t begin, int64_t end, int worker) {
+    shares *s = context;
+    if (s->first[worker] < 0) s->first[worker] = begin;
+    for (int64_t i = begin; i < end; i++) s->owner[i] = (int8_t)worker, s->times[i]++;
+}
+
+static void phase_of(shares *s, int threads, int count, int grain) {
+    memset(s, 0, sizeof *s);
+    memset(s->owner, -1, sizeof s->owner), memset(s->first, -1, sizeof s->first);
+    if (grain)
+        brunt_parallel(threads, count, grain, note, s, NULL);
+    else
+        brunt_parallel_each(threads, count, note, s, NULL);
+}
+
+// Whatever there is of threads, units and grain: each unit once. A worker begins with its own share, the same in each
+// phase, unless others have done all of that.
+START_TEST(workers_begin_with_their_share) {
+    for (int threads = 1; threads <= 8; threads++)
+        for (int count = 1; count <= 64; count++)
+            for (int grain = 0; grain <= 3; grain++) {
+                shares s;
+                phase_of(&s, threads, count, grain);
+                const int unit = grain ? grain : 1, pieces = (count + unit - 1) / unit,
+                          most = grain ? pieces / 4 : count,
+                          workers = most < 1         ? 1
+                                    : most < threads ? most
+                                                     : threads;
+                for (int i = 0; i < count; i++) ck_assert_int_eq(s.times[i], 1);
+                for (int w = 0; w < workers; w++) {
+                    const int from = pieces * w / workers * unit, to = pieces * (w + 1) / workers * unit;
+                    bool others = true;
+                    for (int i = from; i < to && i < count; i++) others = others && s.owner[i] != w;
+                    ck_assert(others || (s.first[w] >= from && s.first[w] < to));
+                }
+            }
+}
+END_TEST
+
+static atomic_bool last_of_share_done;
+
+static void wait_for_help(void *context, int64_t begin, int64_t end, int worker) {
+    (void)context, (void)end, (void)worker;
+    const double give_up = brunt_clock() + 60;
+    if (begin == 3) atomic_store(&last_of_share_done, true);
+    while (begin == 0 && !atomic_load(&last_of_share_done) && brunt_clock() < give_up) {}
+}
+
+// A worker that has done its share helps the others: the first unit does not end before the last one of its share has.
+START_TEST(workers_help_each_other) {
+    atomic_store(&last_of_share_done, false);
+    const double begin = brunt_clock();
+    brunt_parallel(2, 8, 1, wait_for_help, NULL, NULL);
+    ck_assert_double_lt(brunt_clock() - begin, 60);
+}
+END_TEST
+
 // Before anything is known of it, a phase of some microseconds is not shared and a longer one is.
 START_TEST(guesses_go_by_the_work) {
     for (int k = 0; k < SIZES; k++) {
@@ -207,6 +271,8 @@ int main(void) {
     tcase_add_test(tests, rare_waits_count);
     tcase_add_test(tests, costs_survive_a_pause);
     tcase_add_test(tests, tasks_are_told_apart);
+    tcase_add_test(tests, workers_begin_with_their_share);
+    tcase_add_test(tests, workers_help_each_other);
     tcase_add_test(tests, guesses_go_by_the_work);
     tcase_add_test(tests, each_unit_is_run_once);
     suite_add_tcase(suite, tests);
