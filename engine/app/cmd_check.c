@@ -318,11 +318,43 @@ static void print_newton(const brunt_scene *scene, brunt_world *world) {
                fastest * scene->world.step / scene->world.cell);
 }
 
+static void print_longer(double times, double seconds, const char *without) {
+    if (times < 1.005)
+        printf("no longer without %s", without);
+    else
+        printf("%.3g times as long without %s (steps %.3g s)", times, without, seconds / times);
+}
+
+// Whose step it is, and what its elements and the other bodies would have.
+static void print_limit(const brunt_world *world, brunt_step_limit limit, double seconds) {
+    char few[64];
+    if (limit.body < 0) return;
+    printf("  the step is that of body %s", brunt_body_name(world, limit.body));
+    if (limit.element >= 0)
+        printf(", element id %lld (stable up to %.4g s%s)", (long long)limit.element, limit.step,
+               limit.step < 0.999 * limit.element_step ? " with the loads on its surface" : "");
+    else
+        printf(" (stable up to %.4g s)", limit.step);
+    if (limit.element >= 0 && isfinite(limit.without_few)) {
+        snprintf(few, sizeof few, "its shortest %s", limit.few == 1 ? "element" : "elements");
+        if (limit.few > 1) snprintf(few, sizeof few, "its %lld shortest elements", (long long)limit.few);
+        printf("; ");
+        print_longer(limit.without_few / limit.element_step, seconds, few);
+    }
+    if (isfinite(limit.without_body)) {
+        printf("%s", limit.element >= 0 && isfinite(limit.without_few) ? ", " : "; ");
+        print_longer(limit.without_body / limit.step, seconds, "the body");
+    }
+    printf("\n");
+}
+
 static int print_cost(const brunt_machine *machine, const brunt_scene *scene, brunt_world *world,
                       brunt_history *history, bool quick, brunt_error *error) {
     brunt_prediction p;
+    brunt_step_limit limit; // at the start: predictions take steps
     const int threads = brunt_world_threads(world);
-    int status = brunt_predict(scene, world, history, quick, &p, error);
+    int status = brunt_world_step_limit(world, &limit, error);
+    if (!status) status = brunt_predict(scene, world, history, quick, &p, error);
     if (status) return status;
     char all[32];
     brunt_duration(p.step_seconds + p.output_seconds, all);
@@ -335,6 +367,7 @@ static int print_cost(const brunt_machine *machine, const brunt_scene *scene, br
            brunt_world_elements(world) == 0    ? "particle"
            : brunt_world_particles(world) == 0 ? "element"
                                                : "particle- or element");
+    print_limit(world, limit, p.step_seconds);
     print_stored(machine, scene, world);
     print_rehearsal(&p);
     printf("  steps %.3g s (", p.step_seconds);

@@ -197,6 +197,8 @@ START_TEST(check_and_warnings) {
     contains(text, "tet4 elements");
     contains(text, "worst shape 1 of 1");
     contains(text, "least stable step");
+    contains(text, "the step is that of body ");
+    contains(text, " times as long without the body (steps ");
     contains(text, "ns per element-step");
     ck_assert_ptr_null(strstr(text, "warning:"));
     static const char said[] = "warning: grid: no body is of method mpm, it is not used\n";

@@ -66,6 +66,18 @@ typedef struct brunt_mesh_report {
 } brunt_mesh_report;
 // How good the mesh of a finite-element body is, and what mass scaling added [kg].
 void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report);
+// What decides how long an explicit step is, of the state that there is: stable steps, before time.cfl.
+typedef struct brunt_step_limit {
+    int32_t body;        // that has the shortest; -1: nothing limits the step, or steps are implicit
+    double step;         // [s]
+    double without_body; // [s] the shortest of the other bodies; INFINITY: there is none
+    int64_t element;     // id of that body's element that has the shortest; -1: it is of material points
+    double element_step; // [s] of that alone; with loads that follow the surface `step` is shorter
+    int64_t few;         // its shortest elements, one in a hundred ...
+    double without_few;  // [s] ... and the shortest of the others; INFINITY: there are none
+} brunt_step_limit;
+// BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_world_step_limit(brunt_world *world, brunt_step_limit *limit, brunt_error *error);
 typedef struct brunt_body_sums {
     double mass, momentum[3], centre[3], velocity[3]; // [kg], [kg m/s], [m], [m/s] of the centre of mass
     double kinetic, internal, plastic;                // [J]
