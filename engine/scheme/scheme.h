@@ -82,7 +82,7 @@ int brunt_pass_elements(brunt_world *world, brunt_step *step, brunt_error *error
 // The step that is due and what acts in it. BRUNT_FAILED when there is none to take.
 int brunt_pass_choose(brunt_world *world, brunt_step *step, brunt_error *error);
 // The greatest speed of planes [m/s].
-double brunt_boundary_speed(const brunt_world *world);
+double brunt_boundary_speed(const brunt_boundaries *set);
 // The step that follows stable ones, of this state and of those before.
 double brunt_held_step(struct brunt_clock *clock, double stable);
 // Gives the bodies the time, gravity to the step, and empties the accounts of the last one.

@@ -12,10 +12,10 @@ double brunt_body_step(const brunt_world *world, int body, double around) {
     return ref->ops->stable_step(ref, world->settings.cell, around, load);
 }
 
-double brunt_boundary_speed(const brunt_world *world) {
+double brunt_boundary_speed(const brunt_boundaries *set) {
     double most = 0;
-    for (int w = 0; w < world->boundaries.boundary_count; w++) {
-        const brunt_boundary *boundary = &world->boundaries.boundary[w];
+    for (int w = 0; w < set->boundary_count; w++) {
+        const brunt_boundary *boundary = &set->boundary[w];
         const double *v = boundary->kind->velocity ? boundary->kind->velocity(boundary) : (const double[3]){0};
         most = fmax(most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
@@ -23,7 +23,7 @@ double brunt_boundary_speed(const brunt_world *world) {
 }
 
 double brunt_stable_step(const brunt_world *world) {
-    const double boundary_speed = brunt_boundary_speed(world);
+    const double boundary_speed = brunt_boundary_speed(&world->boundaries);
     double least = INFINITY, first = INFINITY;
     for (int i = 0; i < world->bodies.count; i++) {
         const double step = brunt_body_step(world, i, boundary_speed);
