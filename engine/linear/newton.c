@@ -343,6 +343,12 @@ static int go(newton_run *r, int halvings, double share) {
     return BRUNT_OK;
 }
 
+// What terms keep beside u goes along with it: a short step changes the gradient by little.
+static void follow_share(const newton_run *r, double share) {
+    for (int t = 0; t < r->problem->count; t++)
+        if (r->problem->terms[t].ops->follow) r->problem->terms[t].ops->follow(r->problem->terms[t].self, share);
+}
+
 // Halves the step until the gradient is shorter than the longest of the last ones: near a kink, where flow begins, it
 // may grow for once (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23).
 static int search_forces(newton_run *r, double *share) {
@@ -350,6 +356,7 @@ static int search_forces(newton_run *r, double *share) {
     for (int k = 0; k < MEMORY; k++) longest = fmax(longest, r->length[k]);
     for (int half = 0; half <= FEW_HALVINGS; half++, *share *= 0.5) {
         try_share(r, *share);
+        follow_share(r, *share);
         const double length = gradient_at(r, r->n->trial);
         const bool taken = half == 0 && small(r);
         if (!isfinite(length) || !(taken || length <= (1 - LEAST_DECREASE * *share) * longest)) continue;

@@ -65,6 +65,9 @@ typedef struct brunt_term_ops {
     // becomes true unless that is as it is to be. BRUNT_OK, or BRUNT_FAILED: there is no end to it, with the reason.
     // NULL: it keeps nothing. The solver has to be exact.
     int (*sweep)(void *term, const double *u, const double *p, double *g, bool *changed, brunt_error *error);
+    // Where there is no energy, so that lengths of gradients are compared: it keeps what it is to have once a share of
+    // the step that it was swept for has been gone. NULL: it keeps nothing.
+    void (*follow)(void *term, double share);
 } brunt_term_ops;
 
 typedef struct brunt_term {

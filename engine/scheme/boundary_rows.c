@@ -11,7 +11,11 @@
 #include "linear/block_matrix.h"
 #include "materials/material.h"
 
-static const double STIFF = 1e3; // b beside the stiffness of the grid: sets the number of sweeps, nothing else
+// b beside the stiffness of the grid: sets the number of sweeps. Where there is no energy it also says, of what may
+// leave or slip, which of it does so after a step of Newton's method, and goes to and fro where it is stiffer than what
+// it holds.
+static const double STIFF = 1e3, SOFT = 3;
+static const double NEAR = 0.1; // cells: what is nearer has come
 
 // ------------------------------------------------------------------------------------------ nodes
 
@@ -77,11 +81,11 @@ static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, cons
 
 // ------------------------------------------------------------------------------------------ patches
 
-static double stiffness(const brunt_boundary_rows *rows, int body) {
-    const brunt_material *material = &rows->bodies->mpm[body].material;
+static double stiffness(const brunt_boundary_rows *rows, const brunt_boundary_patch *p) {
+    const brunt_material *material = &rows->bodies->mpm[p->body].material;
     const double c = (double)material->wave_speed, h = rows->cell;
     const double inertia = rows->still ? 0 : 4 * h / (rows->dt * rows->dt);
-    return STIFF * (double)material->density * (c * c / h + inertia);
+    return (p->leaves && rows->forces ? SOFT : STIFF) * (double)material->density * (c * c / h + inertia);
 }
 
 // How the surface moves along the rows, by `step`, at a boundary particle that is `gap` from the body.
@@ -118,7 +122,7 @@ static void close_patch(brunt_boundary_rows *rows, brunt_boundary_patch *p) {
     for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->before[k] = kept[k];
     // In load steps what rubs sticks until it is known what presses: there is nothing else that could hold it.
     p->bound = !p->rubs ? 0 : rows->still ? INFINITY : s->def.friction * fmax(0, -kept[0]);
-    p->stiffness = stiffness(rows, p->body);
+    p->stiffness = stiffness(rows, p);
     for (int64_t k = rows->first[rows->patch_count]; k < rows->first[rows->patch_count + 1]; k++)
         rows->mark[rows->node[k]] = 0;
     if (p->size > 0) rows->patch_count++;
@@ -145,7 +149,8 @@ static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32
         if (rows->here[b] == INFINITY) continue;
         if (add_particle(rows, p, particle, extent->way, &share, error)) return BRUNT_FAILED;
         add_motion(p, particle, s->turned.particle ? s->turned.goes[b] : extent->step, share, rows->here[b]);
-        if (!(share > 0)) rows->unseen = s;
+        // A grain that has been drawn out is longer than its nodes reach: its end holds nothing, and comes no nearer.
+        if (!(share > 0) && rows->here[b] > NEAR * rows->cell) rows->unseen = s;
     }
     close_patch(rows, p);
     return BRUNT_OK;

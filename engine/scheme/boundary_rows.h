@@ -22,6 +22,7 @@ typedef struct brunt_boundary_patch {
     double multiplier[3];          // l [Pa]
     double before[3];              // [Pa] of the end of the last step
     double bound;                  // [Pa] most friction
+    double from[3], to[3];         // [Pa] l before the step of Newton's method that is made, and once it is gone
     bool stiff[2];                 // whether the matrix has row 0, the others
 } brunt_boundary_patch;
 
@@ -42,6 +43,7 @@ typedef struct brunt_boundary_rows {
     double *dense;
     double cell, dt; // [m], [s]
     bool still;      // load steps: no inertia
+    bool forces;     // there is no energy
     int64_t reached; // boundary particles with a distance
     bool any_leave;  // surfaces that material may leave
     // One that material comes to from where no node of it is, one that it went through, NULL: none.

@@ -7,7 +7,7 @@
 #include "linear/block_matrix.h"
 #include "scheme/boundary_rows.h"
 
-enum { SWEEP_LIMIT = 10, SLOW_LIMIT = 30 };
+enum { SWEEP_LIMIT = 10, SLOW_LIMIT = 30, SOFTER = 3 }; // SOFTER: times as many where b is that of the grid
 static const double EVEN = 1e-11;      // cells: how well what is held keeps its place within a step of Newton's method
 static const double SLOW = 1e-8;       // cells: what many sweeps leave of conditions that do not contradict each other
 static const double SETTLED = 1e-9;    // cells: the same of what may leave, at the end
@@ -156,10 +156,13 @@ static void add_patch_matrix(brunt_boundary_rows *r, int32_t patch, const double
 
 static void rows_hessian(void *term, const brunt_team *team, const double *u, bool project,
                          struct brunt_block_matrix *h) {
-    (void)team, (void)project; // it has no negative eigenvalues
+    (void)team; // it has no negative eigenvalues
     brunt_boundary_rows *r = term;
     r->swept = 0;
-    for (int32_t p = 0; p < r->patch_count; p++) add_patch_matrix(r, p, u, h);
+    for (int32_t p = 0; p < r->patch_count; p++) {
+        if (!project) memcpy(r->patch[p].from, r->patch[p].multiplier, sizeof r->patch[p].from);
+        add_patch_matrix(r, p, u, h);
+    }
 }
 
 double brunt_boundary_rows_forces(const brunt_boundary_rows *r, const double *u) {
@@ -218,7 +221,9 @@ static double patch_sweep(brunt_boundary_rows *r, int32_t patch, const double *u
     tentative(r, patch, moved, here);
     for (int k = 0; k < 3; k++) moved[k] += along[k];
     tentative(r, patch, moved, there);
-    return follow(&r->patch[patch], here, there, r->cell, multiplier);
+    const double change = follow(&r->patch[patch], here, there, r->cell, multiplier);
+    memcpy(r->patch[patch].to, multiplier, 3 * sizeof *multiplier);
+    return change;
 }
 
 static int rows_sweep(void *term, const double *u, const double *step, double *g, bool *changed, brunt_error *error) {
@@ -230,8 +235,9 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         if (change > most) most = change, worst = p;
     }
     // What is left of it is in t as it is: no force is lost. Pieces of which little is reached go on slowly.
-    if (worst < 0 || r->swept >= SLOW_LIMIT) return BRUNT_OK;
-    if (r->swept >= SWEEP_LIMIT && most > SLOW) return never_ends(r, worst, error);
+    const bool soft = worst >= 0 && r->forces && r->patch[worst].leaves;
+    if (worst < 0 || r->swept >= (soft ? SOFTER * SLOW_LIMIT : SLOW_LIMIT)) return BRUNT_OK;
+    if (r->swept >= SWEEP_LIMIT && most > SLOW && !soft) return never_ends(r, worst, error);
     for (int32_t p = 0; p < r->patch_count; p++) {
         double before[3], after[3], moved[3];
         brunt_boundary_patch_traction(r, p, u, before, moved);
@@ -245,6 +251,14 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
     r->swept++;
     *changed = true;
     return BRUNT_OK;
+}
+
+static void rows_follow(void *term, double share) {
+    const brunt_boundary_rows *r = term;
+    for (int32_t patch = 0; patch < r->patch_count; patch++) {
+        brunt_boundary_patch *p = &r->patch[patch];
+        for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->from[k] + share * (p->to[k] - p->from[k]);
+    }
 }
 
 // Whether tractions and bounds at u are not yet those that it was found with.
@@ -280,4 +294,5 @@ const brunt_term_ops brunt_boundary_rows_ops = {.name = "boundaries",
                                                 .gradient = rows_gradient,
                                                 .stencils = rows_stencils,
                                                 .hessian = rows_hessian,
-                                                .sweep = rows_sweep};
+                                                .sweep = rows_sweep,
+                                                .follow = rows_follow};

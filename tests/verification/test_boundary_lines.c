@@ -249,6 +249,50 @@ START_TEST(rubs) {
 }
 END_TEST
 
+// Grains without cohesion collapse beside a wall and run out on a rough floor, where some of them begin or cease to
+// touch, to slip or to stick in each step: a material without a potential. The wall, on either side, gives what they
+// gain along x with what the floor takes; they go as far as in explicit steps.
+static brunt_world *column(double side, double mu, bool implicit) {
+    brunt_world_def def = def_begin(2, 0.02);
+    brunt_material_def *m = def_material(&def, "mohr-coulomb", 2040, 5.84e6, 0.3);
+    m->strength_parameters[3] = atan(mu);
+    if (implicit)
+        hold_by_surfaces(&def, 2, 1e-3), def.newton = brunt_world_def_default().newton;
+    else
+        def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
+    def.gravity[1] = -9.81;
+    def_box(&def, "column", XYZ(side > 0 ? 0 : -0.2, 0, 0), XYZ(side > 0 ? 0.2 : 0, 0.1, 0));
+    def_line(&def, -0.5, 0, 0.5, 0, BRUNT_SEPARATE)->friction = mu;
+    def_line(&def, 0, side > 0 ? 0.3 : -0.1, 0, side > 0 ? -0.1 : 0.3, BRUNT_SEPARATE);
+    return world_take(&def);
+}
+
+START_TEST(collapses) {
+    const double side = _i ? -1 : 1, mu = 0.402;
+    brunt_world *world = column(side, mu, true), *explicit = column(side, mu, false);
+    world_until(world, 0.15), world_until(explicit, 0.15);
+    const brunt_body_sums s = world_sums(world, 0), other = world_sums(explicit, 0);
+    const brunt_reaction floor = world_boundary(world, 0), wall = world_boundary(world, 1);
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    printf("  %.0f steps, %.0f cuts, %.1f iterations a step; centre at %.4f, %.4f m, explicit %.4f, %.4f m; floor %.4f "
+           "of the weight, friction "
+           "%.3f of it\n",
+           (double)n.steps, (double)n.cuts, (double)n.iterations / (double)n.steps, s.centre[0], s.centre[1],
+           other.centre[0], other.centre[1], floor.impulse[1] / (s.mass * 9.81 * 0.15),
+           -side * floor.impulse[0] / floor.impulse[1]);
+    ck_assert_double_le(n.cuts, 4);
+    ck_assert_double_le(fabs(s.centre[0] - other.centre[0]), 2e-3);
+    ck_assert_double_le(fabs(s.centre[1] - other.centre[1]), 4e-3); // pieces hold their mean: the lowest row is lower
+    ck_assert_double_gt(side * wall.impulse[0], 0);
+    ck_assert_double_le(fabs(wall.impulse[0] + floor.impulse[0] - s.mass * s.velocity[0]), 1e-9 * floor.impulse[1]);
+    ck_assert_double_le(-side * floor.impulse[0], mu * floor.impulse[1]);
+    ck_assert_double_ge(floor.friction_work, 0);
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-6);
+    brunt_world_destroy(world), brunt_world_destroy(explicit);
+}
+END_TEST
+
 // The same line twice shares what one takes alone.
 START_TEST(twice) {
     double force[2] = {0, 0}, place[2];
@@ -545,6 +589,7 @@ int main(void) {
     ADD_LOOP(falls, 4);
     ADD_LOOP(leaves, 2);
     ADD_LOOP(rubs, 3);
+    ADD_LOOP(collapses, 2);
     ADD_LOOP(twice, 1);
     ADD_LOOP(hard, 8);
     ADD_LOOP(threads, 1);
