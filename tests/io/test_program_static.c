@@ -1,6 +1,6 @@
 // Friction of load steps, as a user meets it: Coulomb's law, what surfaces have given is kept from step to step and
 // over a restart, and what has no equilibrium is said with body and exit code 70.
-#include "tests/support/small_program.h"
+#include "tests/support/small_columns.h"
 
 #include <jansson.h>
 
@@ -21,26 +21,6 @@ static const char block[] =
     "[1 s, -1]]}\n"
     "contact: {method: barrier, friction: 0.3, distance: 10 um}\n"
     "output: {history: 0 s, every: none}\n";
-
-enum { ROWS = 64 };
-// A column of history.csv of a folder; how many lines there are.
-static int read_column(const char *folder, const char *name, double value[ROWS]) {
-    char path[200], line[20000];
-    snprintf(path, sizeof path, "%s/%s/history.csv", small_folder, folder);
-    FILE *file = fopen(path, "r");
-    ck_assert(file && fgets(line, sizeof line, file));
-    int column = -1, count = 0, at = 0;
-    for (char *head = strtok(line, ","); head; head = strtok(NULL, ","), at++)
-        if (!strncmp(head, name, strlen(name)) && head[strlen(name)] == ' ') column = at;
-    ck_assert_msg(column >= 0, "no column %s", name);
-    for (; fgets(line, sizeof line, file) && count < ROWS; count++) {
-        char *cell = line;
-        for (int c = 0; c < column; c++) cell = strchr(cell, ',') + 1;
-        value[count] = strtod(cell, NULL);
-    }
-    fclose(file);
-    return count;
-}
 
 static const char *const methods[] = {"barrier", "penalty"};
 
@@ -225,65 +205,6 @@ START_TEST(what_slides_away_is_70) {
 }
 END_TEST
 
-// Nine disks in a square, pressed by 30 N/m a row: each contact carries that, of as many as there are, and the picture
-// has a line for each.
-static const char square[] =
-    "brunt: 1\ntitle: nine disks\ndimension: 2\ntime: {scheme: static, steps: 2}\nnewton: {tolerance: 1e-8}\n"
-    "materials:\n  soft: {model: linear-elastic, density: 1000 kg/m^3, E: 2.75 MPa, nu: 0.3}\n"
-    "  stiff: {model: linear-elastic, density: 1000 kg/m^3, E: 200 MPa, nu: 0.3}\nbodies:\n"
-    "  grains: {method: fem, element: tri3, size: 2 mm, material: soft, crowd: {lattice: square, count: [3, 3], "
-    "radius: 5 mm, "
-    "gap: 30 um}}\n"
-    "  top: {method: fem, element: quad4, size: 2.5 mm, material: stiff, shape: {box: {min: [0.1 mm, 30.09 mm], max: "
-    "[30.19 mm, "
-    "35.09 mm]}}}\n"
-    "  right: {method: fem, element: quad4, size: 2.5 mm, material: stiff, shape: {box: {min: [30.09 mm, 0.1 mm], max: "
-    "[35.09 mm, "
-    "30.19 mm]}}}\n"
-    "boundaries:\n"
-    "  - {name: left, plane: {point: [0, 0], normal: [1, 0]}, condition: separate}\n"
-    "  - {name: bottom, plane: {point: [0, 0], normal: [0, 1]}, condition: separate}\n"
-    "  - {body: top, group: ymax, traction: [0, -2991.0269 Pa], table: [[0 s, 0], [1 s, 1]]}\n"
-    "  - {body: right, group: xmax, traction: [-2991.0269 Pa, 0], table: [[0 s, 0], [1 s, 1]]}\n"
-    "  - {body: top, group: surface, fix: [x]}\n  - {body: right, group: surface, fix: [y]}\n"
-    "contact: {method: barrier, friction: 0.5, distance: 50 um, pairs: [{between: [grains, top], friction: 0}, "
-    "{between: [grains, right], friction: 0}, {between: [top, right], method: none}]}\noutput: {every: 1 s, history: 0 "
-    "s}\n";
-
-START_TEST(links_are_told) {
-    double count[ROWS], mean[ROWS], sd[ROWS], slipping[ROWS], body[ROWS], all[ROWS];
-    char path[200];
-    small_put("square.yaml", square);
-    small_expect("run square.yaml -t 1 -o out", 0, "links: 18 bodies push each other, mean ");
-    // Nothing moves, and nothing is told of momenta.
-    ck_assert_int_ne(small_shell("grep -q momentum output out/history.csv"), 0);
-    const int last = read_column("out", "links.count", count) - 1;
-    read_column("out", "links.mean", mean), read_column("out", "links.sd", sd);
-    read_column("out", "links.slipping", slipping);
-    ck_assert_double_eq(count[0], 0);
-    ck_assert_double_eq(count[last], 18);
-    ck_assert_double_eq_tol(mean[last], 30, 0.003 * 30);
-    ck_assert_double_lt(sd[last], 0.003 * 30);
-    ck_assert_double_eq(slipping[last], 0);
-    // What Newton's method has left of each body, and of all, as forces at the end have it.
-    read_column("out", "balance.body", body), read_column("out", "balance.all", all);
-    ck_assert(body[last] > 0 && body[last] < 1e-8 && all[last] > 0 && all[last] < 1e-10);
-    small_expect("info out/vtu/contact.links_000001.vtu", 0, "elements   18");
-    snprintf(path, sizeof path, "%s/out/summary.json", small_folder);
-    json_t *summary = json_load_file(path, 0, NULL), *links = json_object_get(summary, "links");
-    ck_assert_int_eq(json_integer_value(json_object_get(links, "count")), 18);
-    ck_assert_double_eq(json_real_value(json_object_get(links, "mean")), mean[last]);
-    json_t *balance = json_object_get(summary, "balance");
-    ck_assert_double_eq(json_real_value(json_object_get(balance, "body")), body[last]);
-    ck_assert_ptr_nonnull(json_string_value(json_object_get(balance, "worst")));
-    ck_assert_ptr_null(json_object_get(summary, "momentum"));
-    json_decref(summary);
-    small_expect("run square.yaml -t 1 -q -o loose --set newton.tolerance=1e-2", 0, NULL);
-    read_column("loose", "balance.body", body);
-    ck_assert_double_gt(body[last], 1e-8);
-}
-END_TEST
-
 // A block that only just touches, and one that is pressed: of the loose one there is next to nothing, and all of it
 // would be left. It is told beside what acts on all.
 START_TEST(loose_bodies_balance) {
@@ -308,126 +229,6 @@ START_TEST(loose_bodies_balance) {
 }
 END_TEST
 
-// Eight disks in a hexagonal lattice: what presses changes with friction everywhere. Taken anew from round to round
-// alone, it wants 100 iterations and more in a load step; with friction that follows it, 60 are plenty.
-START_TEST(hexagonal_packings_settle) {
-    static const double mu[] = {0.1, 0.5};
-    double count[ROWS], x[ROWS], y[ROWS];
-    char words[400];
-    small_put("square.yaml", square);
-    for (size_t k = 0; k < sizeof mu / sizeof *mu; k++) {
-        snprintf(words, sizeof words,
-                 "run square.yaml -t 1 -q -o hex --set bodies.grains.crowd.lattice=hex --set 'bodies.grains.size=0.65 "
-                 "mm' --set 'bodies.top.shape.box={min: [0.1 mm, 27.4025 mm], max: [30.19 mm, 32.4025 mm]}' --set "
-                 "'newton={tolerance: 1e-8, iterations: 60, cut: 0}' --set contact.friction=%g",
-                 mu[k]);
-        small_expect(words, 0, NULL);
-        const int last = read_column("hex", "links.count", count) - 1;
-        read_column("hex", "wall.left.force_x", x), read_column("hex", "wall.bottom.force_y", y);
-        ck_assert_double_ge(count[last], 15);
-        ck_assert_double_eq_tol(x[last], 2991.0269 * 30.09e-3,
-                                0.03 * 90); // but for the little that leans on the smooth plates
-        ck_assert_double_eq_tol(y[last], 2991.0269 * 30.09e-3, 0.03 * 90);
-    }
-}
-END_TEST
-
-// Nine disks, the upper plate's load turned round: they settle as long as it presses, and have no equilibrium from
-// where it draws the plate off, which is told. Of rims with edges of 2 mm, chords 0.1 mm off their arcs, corners come
-// to stand on each other where the load is 0.56 of the other plate's: equilibria there are not stable, and friction
-// does not settle (it ends at 0.61 s).
-START_TEST(load_is_turned_round) {
-    static const char turned[] =
-        "run square.yaml -t 1 -q -o out --set 'bodies.grains.size=0.65 mm' --set time.steps=8 --set "
-        "'newton={tolerance: 1e-8, iterations: 60, cut: 1}' --set 'boundaries[2].table=[[0 s, 0], [0.5 s, 1], [1 s, "
-        "%g]]'";
-    char words[400];
-    double time[ROWS], up[ROWS];
-    small_put("square.yaml", square);
-    snprintf(words, sizeof words, turned, 0.0);
-    small_expect(words, 0, NULL);
-    snprintf(words, sizeof words, turned, -1.0);
-    small_expect(words, 70, "body 'top' at");
-    const int last = read_column("out", "time", time) - 1;
-    read_column("out", "wall.bottom.force_y", up);
-    ck_assert_double_eq_tol(time[last], 0.75, 1e-9);
-    ck_assert_double_eq_tol(up[last], 0, 1e-3 * 90);
-}
-END_TEST
-
-// Disks in a hexagonal lattice, pressed from above alone, slide apart: all of them, and the plate that nothing holds.
-START_TEST(what_slides_apart_is_told) {
-    static const double mu[] = {0.1, 0};
-    char words[500];
-    small_put("square.yaml", square);
-    for (size_t k = 0; k < sizeof mu / sizeof *mu; k++) {
-        snprintf(
-            words, sizeof words,
-            "run square.yaml -t 1 -q -o apart --set bodies.grains.crowd.lattice=hex --set 'bodies.grains.size=0.65 "
-            "mm' --set 'bodies.top.shape.box={min: [0.1 mm, 27.4025 mm], max: [30.19 mm, 32.4025 mm]}' --set "
-            "'newton={tolerance: 1e-8, iterations: 60, cut: 1}' --set 'boundaries[3].traction=[0 Pa, 0]' --set "
-            "contact.friction=%g",
-            mu[k]);
-        small_expect(words, 70, "The greatest force left is");
-        ck_assert_int_eq(small_shell("grep -Eq \"body '(right|grains.[1-8])' at\" output"), 0);
-    }
-}
-END_TEST
-
-// What is hard for a packing finds its equilibrium, or ends with the body that has none.
-START_TEST(hard_packings_settle_or_say_why) {
-    small_put("square.yaml", square);
-    small_expect("run square.yaml -t 1 -q -o out --set contact.friction=1e-3", 0, NULL);
-    small_expect("run square.yaml -t 1 -q -o out --set contact.friction=0", 0, NULL);
-    small_expect("run square.yaml -t 1 -q -o out --set 'bodies.grains.random={E: {between: [1 kPa, 10 MPa]}}'", 0,
-                 NULL);
-    small_expect("run square.yaml -t 1 -q -o out --set time.steps=6 --set 'boundaries[2].table=[[0 s, 0], [0.5 s, 1], "
-                 "[1 s, 0.2]]'",
-                 0, NULL);
-    // Ten times the load is more than a square lattice stands: it turns over, and that is said, and which disk does.
-    small_expect("run square.yaml -t 1 -q -o out --set 'boundaries[2].traction=[0, -29910.269 Pa]' --set "
-                 "'boundaries[3].traction=[-29910.269 Pa, 0]'",
-                 70, "is unstable");
-    ck_assert_int_eq(small_shell("grep -q \"body 'grains\\.[1-9]' at (0.0\" output"), 0);
-    // A disk in a pore carries nothing, and stays where it is; under gravity it comes to lie on others.
-    ck_assert_int_eq(small_shell("sed 's/^  top: {/  loose: {method: fem, element: tri3, size: 0.5 mm, material: soft, "
-                                 "shape: {disk: {center: [10.03 mm, 10.03 mm], radius: 1 mm}}}\\n  top: {/' "
-                                 "square.yaml > rattler.yaml"),
-                     0);
-    double y[ROWS], count[ROWS];
-    small_expect("run rattler.yaml -t 1 -q -o out", 0, NULL);
-    int last = read_column("out", "links.count", count) - 1;
-    read_column("out", "body.loose.position_y", y);
-    ck_assert_double_eq(count[last], 18);
-    ck_assert_double_eq(y[last], y[0]);
-    small_expect("run rattler.yaml -t 1 -q -o out --set 'loads={gravity: [0, -9.81]}'", 0, NULL);
-    last = read_column("out", "links.count", count) - 1, read_column("out", "body.loose.position_y", y);
-    ck_assert_double_ge(count[last], 20);
-    ck_assert_double_lt(y[last], y[0] - 1e-4);
-    small_expect("run square.yaml -t 1 -q -o out --set bodies.grains.crowd.gap=0", 65, "bodies.grains.1 touches");
-    small_expect("run square.yaml -t 1 -q -o out --set newton.cut=0 --set 'bodies.grains.crowd.radius=4 mm' --set "
-                 "'bodies.grains.crowd.gap=2.03 mm'",
-                 70, "of a load step, halved 0 times");
-}
-END_TEST
-
-// Three disks, two below: the coefficient that keeps the lower ones from being pushed apart is tan 15 deg, within 1 %.
-// Below it nothing is kept of the step, and the body that slides is told.
-START_TEST(pyramid_stands_above_its_friction_alone) {
-    const double least = tan(atan(1) / 3), part[] = {1.01, 0.99};
-    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
-        char words[400];
-        snprintf(words, sizeof words,
-                 "run %s/bench/scenes/pyramid.yaml -t 1 -o pyramid --fresh --set output.every=none --set "
-                 "'contact={method: %s, distance: 10 um, friction: %.6f}'",
-                 getenv("BRUNT_SOURCE"), _i ? "penalty" : "barrier, stiffness: 5 kPa", part[k] * least);
-        small_expect(words, k ? 70 : 0, k ? "friction does not settle" : NULL);
-        ck_assert_int_eq(small_shell("grep -q 'links: %d bodies push' output", k ? 0 : 4), 0);
-        if (k) ck_assert_int_eq(small_shell("grep -Eq \"body '(left|right)' at\" output"), 0);
-    }
-}
-END_TEST
-
 int main(void) {
     Suite *suite = suite_create("program_static");
     TCase *tests = tcase_create("program_static");
@@ -438,13 +239,7 @@ int main(void) {
     tcase_add_test(tests, tractions_are_told_along_rims);
     tcase_add_test(tests, wedge_slides_below_its_slope_alone);
     tcase_add_test(tests, what_slides_away_is_70);
-    tcase_add_test(tests, links_are_told);
     tcase_add_test(tests, loose_bodies_balance);
-    tcase_add_test(tests, hexagonal_packings_settle);
-    tcase_add_test(tests, hard_packings_settle_or_say_why);
-    tcase_add_test(tests, load_is_turned_round);
-    tcase_add_test(tests, what_slides_apart_is_told);
-    tcase_add_loop_test(tests, pyramid_stands_above_its_friction_alone, 0, 2);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
