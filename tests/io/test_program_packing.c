@@ -167,6 +167,66 @@ START_TEST(hard_packings_settle_or_say_why) {
 }
 END_TEST
 
+#define HEX                                                                                                            \
+    "run square.yaml -t 1 -q -o out --set bodies.grains.crowd.lattice=hex --set 'bodies.grains.size=0.65 mm' --set "   \
+    "'bodies.top.shape.box={min: [0.1 mm, 27.4025 mm], max: [30.19 mm, 32.4025 mm]}' "
+
+// The same of a hexagonal lattice, where what presses changes with friction everywhere: each settles, all carry what
+// presses them, and of what hardly rubs most slip. The lattice stands ten times the load, which the square one does
+// not.
+START_TEST(hard_hexagons_settle) {
+    static const struct {
+        const char *words;
+        double down, across; // of the usual load
+        int slipping;        // links that slip, at least
+    } hard[] = {
+        {HEX "--set contact.friction=0", 1, 1, 0},
+        {HEX "--set contact.friction=1e-3", 1, 1, 10},
+        {HEX "--set 'bodies.grains.random={E: {between: [1 kPa, 10 MPa]}}'", 1, 1, 0},
+        {HEX "--set contact.friction=0.1 --set 'bodies.grains.random={E: {between: [1 kPa, 10 MPa]}}'", 1, 1, 1},
+        {HEX "--set 'boundaries[2].traction=[0, -29910.269 Pa]' --set 'boundaries[3].traction=[-29910.269 Pa, 0]'", 10,
+         10, 0},
+        {HEX "--set time.steps=6 --set 'boundaries[2].table=[[0 s, 0], [0.5 s, 1], [1 s, 0.2]]'", 0.2, 1, 1},
+    };
+    double across[ROWS], down[ROWS], slipping[ROWS], body[ROWS];
+    const double load = 2991.0269 * 30.09e-3;
+    small_put("square.yaml", square);
+    for (size_t k = 0; k < sizeof hard / sizeof *hard; k++) {
+        small_expect(hard[k].words, 0, NULL);
+        const int last = read_column("out", "wall.left.force_x", across) - 1;
+        read_column("out", "wall.bottom.force_y", down), read_column("out", "links.slipping", slipping);
+        read_column("out", "balance.body", body);
+        ck_assert_double_eq_tol(across[last], hard[k].across * load, 0.03 * hard[k].across * load);
+        ck_assert_double_eq_tol(down[last], hard[k].down * load, 0.03 * fmax(hard[k].down, 1) * load);
+        ck_assert_double_ge(slipping[last], hard[k].slipping);
+        ck_assert_double_lt(body[last], 1e-6);
+    }
+}
+END_TEST
+
+// Nothing touches, and nothing pushes: all stays where it is. Plates that are drawn off from the start have no
+// equilibrium, and one of them is named.
+START_TEST(what_touches_nothing) {
+    static const char apart[] =
+        "run square.yaml -t 1 -q -o out --set contact.distance='20 um' --set 'boundaries[2].traction=[0, %s]' --set "
+        "'boundaries[3].traction=[%s, 0]' ";
+    char words[600];
+    double y[ROWS], count[ROWS];
+    small_put("square.yaml", square);
+    snprintf(words, sizeof words, apart, "0", "0");
+    strcat(words,
+           "--set 'bodies.top.place=[{translate: [0, 1 mm]}]' --set 'bodies.right.place=[{translate: [1 mm, 0]}]' "
+           "--set 'boundaries[0].plane.point=[-1 mm, 0]' --set 'boundaries[1].plane.point=[0, -1 mm]'");
+    small_expect(words, 0, NULL);
+    const int last = read_column("out", "links.count", count) - 1;
+    read_column("out", "body.grains.position_y", y);
+    ck_assert(count[last] == 0 && y[last] == y[0]);
+    snprintf(words, sizeof words, apart, "2991.0269 Pa", "2991.0269 Pa");
+    small_expect(words, 70, "The greatest force left is");
+    ck_assert_int_eq(small_shell("grep -Eq \"body '(top|right)' at\" output"), 0);
+}
+END_TEST
+
 // Three disks, two below: the coefficient that keeps the lower ones from being pushed apart is tan 15 deg, within 1 %.
 // Below it nothing is kept of the step, and the body that slides is told.
 START_TEST(pyramid_stands_above_its_friction_alone) {
@@ -192,6 +252,8 @@ int main(void) {
     tcase_add_test(tests, links_are_told);
     tcase_add_test(tests, hexagonal_packings_settle);
     tcase_add_test(tests, hard_packings_settle_or_say_why);
+    tcase_add_test(tests, hard_hexagons_settle);
+    tcase_add_test(tests, what_touches_nothing);
     tcase_add_test(tests, load_is_turned_round);
     tcase_add_test(tests, what_slides_apart_is_told);
     tcase_add_loop_test(tests, pyramid_stands_above_its_friction_alone, 0, 2);
