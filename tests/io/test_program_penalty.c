@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "tests/support/small_program.h"
+#include "tests/support/small_columns.h"
 
 #include <jansson.h>
 
@@ -112,6 +112,58 @@ START_TEST(overlaps_push_apart_or_are_refused) {
 }
 END_TEST
 
+// A block of points, 8 mm wide and much stiffer than soft ground, whose lowest row is a gap (or, below 0, an overlap)
+// above a plane.
+static void put_points(const char *name, double gap, const char *plane, const char *contact) {
+    char text[1200];
+    snprintf(text, sizeof text,
+             "brunt: 1\ndimension: 2\ntime: {scheme: static, steps: 2, energy_limit: 0.9}\nnewton: {tolerance: "
+             "1e-9}\ngrid: {cell: 2 mm}\n"
+             "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\nbodies:\n"
+             "  block: {method: mpm, material: m, shape: {box: {min: [0, %.9g mm], max: [8 mm, %.9g mm]}}}\n"
+             "loads: {gravity: [0, -10]}\noutput: {every: none, history: 0 s}\nboundaries:\n"
+             "  - {name: ground, plane: {point: [0, 0], normal: [0, 1]}, condition: separate%s}\n"
+             "contact: {method: penalty%s}\n",
+             gap - 0.5, gap + 7.5, plane, contact);
+    small_put(name, text);
+}
+
+// Material points and a plane: soft ground bears the weight, 0.64 N/m, by how deep the lowest row of eight is below it,
+// each point as wide as a circle of its area (whose weight is there at once: half its work is not stored); from
+// wherever it began, and whichever of both moves. Where nothing is said the stiffness is by the length of that row.
+START_TEST(points_lie_on_planes) {
+    static const double gap[] = {0.02, 0, -0.03};
+    static const char ground[] = ", penalty: 0.8 kPa/mm";
+    const double wide = 8 * 2e-3 / sqrt(acos(-1)), deep = 0.64 / (0.8e6 * wide);
+    double y[ROWS], force[ROWS];
+    for (int i = 0; i < 3; i++) {
+        put_points("points.yaml", gap[i], "", ground);
+        small_expect("run points.yaml -t 1 -o out --fresh", 0,
+                     gap[i] < 0 ? "penalties push them apart in the first load step" : NULL);
+        const int last = read_column("out", "body.block.position_y", y) - 1;
+        read_column("out", "wall.ground.force_y", force);
+        ck_assert_double_eq_tol(force[last], 0.64, 1e-9);
+        ck_assert_double_eq_tol(y[last] - y[0], -(gap[i] * 1e-3 + deep), 2e-8);
+    }
+    put_points("points.yaml", 0.02, ", velocity: [0, 0.5 mm/s]", ground);
+    small_expect("run points.yaml -t 1 -q -o moved", 0, NULL);
+    const int last = read_column("moved", "body.block.position_y", y) - 1;
+    ck_assert_double_eq_tol(y[last] - y[0], 0.5e-3 - 0.02e-3 - deep, 2e-8);
+    small_expect("run points.yaml -t 2 -q -o two", 0, NULL);
+    char *one = hash_of("moved"), *two = hash_of("two");
+    ck_assert_str_eq(one, two);
+    free(one), free(two);
+    put_points("points.yaml", 0.02, "", "");
+    small_expect("run points.yaml -t 1 -o stiff", 0, "half the mean length of contacts");
+    json_t *summary = summary_of("stiff"), *penalty = json_object_get(summary, "penalty");
+    ck_assert_double_eq_tol(number_of(penalty, "a"), wide / 2, 1e-9);
+    ck_assert_double_eq_tol(number_of(penalty, "least"), 20 * 50e6 / 0.91 / (wide / 2), 1e3);
+    json_decref(summary);
+    put_points("points.yaml", -0.6, "", ground);
+    small_expect("run points.yaml -t 1 -o deep", 65, "more than half the shortest edge in contact");
+}
+END_TEST
+
 // Softer than what presses asks: it is said while there is half of the way left, and surfaces never pass each other.
 START_TEST(too_soft_is_said) {
     put_blocks("blocks.yaml", 0, ", penalty: 50 Pa/mm");
@@ -193,6 +245,7 @@ int main(void) {
     tcase_add_test(tests, stiffness_is_said_and_is_by_the_length_of_contacts);
     tcase_add_test(tests, a_step_that_fails_tells_nothing);
     tcase_add_test(tests, overlaps_push_apart_or_are_refused);
+    tcase_add_test(tests, points_lie_on_planes);
     tcase_add_test(tests, too_soft_is_said);
     tcase_add_test(tests, what_has_no_penalties_is_refused);
     tcase_add_test(tests, it_does_not_matter_which_body_moves);
