@@ -5,7 +5,7 @@ usage: packings.py           (from the top of the tree; BRUNT names the program,
        packings.py --plot    draws packings.png anew from packings.csv
 
 The runs packing_square_5 and packing_hex_small of bench/scenes, with Young's moduli drawn from a normal distribution about 2.75 MPa cut off at 0.5 and
-5 MPa, by its standard deviation; each with several seeds. A run that does not converge, or leaves more than 1e-7 of the forces on a body, ends the study.
+5 MPa, by its standard deviation; each with several seeds. A run that does not converge, or leaves more than 1e-8 of the forces on a body, ends the study.
 """
 import csv, json, os, shlex, statistics, subprocess, sys, tempfile
 
@@ -36,7 +36,7 @@ def measure(lattice, friction, spread, seed, folder):
     with open(f"{folder}/summary.json") as file:
         summary = json.load(file)
     links, balance = summary["links"], summary["balance"]["body"]
-    if balance > 1e-7:
+    if balance > 1e-8:
         sys.exit(f"packings.py: {lattice}, friction {friction}, spread {spread}, seed {seed}: {balance:.3g} of the forces on a body are left")
     return [lattice, friction, spread, seed, links["count"]] + [f"{links[k]:.6g}" for k in ("mean", "sd", "greatest")] + \
            [links["slipping"], f"{balance:.2g}", summary["newton"]["iterations"]]
