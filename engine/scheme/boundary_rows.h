@@ -22,7 +22,7 @@ typedef struct brunt_boundary_patch {
     double multiplier[3];          // l [Pa]
     double before[3];              // [Pa] of the end of the last step
     double bound;                  // [Pa] most friction
-    double from[3], to[3];         // [Pa] l before the step of Newton's method that is made, and once it is gone
+    double from[3], to[3];         // [Pa] l before the step of Newton's method that is made, and after the whole of it
     bool stiff[2];                 // whether the matrix has row 0, the others
 } brunt_boundary_patch;
 

@@ -128,8 +128,8 @@ static void put_points(const char *name, double gap, const char *plane, const ch
     small_put(name, text);
 }
 
-// Material points and a plane: soft ground bears the weight, 0.64 N/m, by how deep the lowest row of eight is below it,
-// each point as wide as a circle of its area (whose weight is there at once: half its work is not stored); from
+// Material points and a plane: soft ground carries the weight, 0.64 N/m, by how deep the lowest row of eight is below
+// it, each point as wide as a circle of its area (whose weight is there at once: half its work is not stored); from
 // wherever it began, and whichever of both moves. Where nothing is said the stiffness is by the length of that row.
 START_TEST(points_lie_on_planes) {
     static const double gap[] = {0.02, 0, -0.03};
