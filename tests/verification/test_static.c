@@ -476,6 +476,35 @@ END_TEST
 START_TEST(restart) { check_restart(pressed(1), pressed(2)); }
 END_TEST
 
+// A disk that is pressed between planes by penalties, whose stiffness goes by the length that contacts had when they
+// were first made: they are longer when the run goes on.
+static brunt_world *by_penalties(int workers) {
+    brunt_world_def def = begin(1, 6);
+    def_material(&def, "linear-elastic", density, 10e6, 0.3);
+    brunt_body_def *b = def_ball(&def, "disk", XYZ(0, 0, 0), 1);
+    b->method = BRUNT_FEM, b->element = BRUNT_QUAD4, b->size = 0.1;
+    def_plane(&def, XYZ(0, -1.0001, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    def_plane(&def, XYZ(0, 1.0001, 0), XYZ(0, -1, 0), BRUNT_SEPARATE, 0)->velocity[1] = -0.1;
+    def.contact.method = BRUNT_CONTACT_PENALTY;
+    def.threads = workers;
+    return world_take(&def);
+}
+
+START_TEST(restart_by_penalties) {
+    brunt_world *world = by_penalties(1), *fresh = by_penalties(2);
+    brunt_barrier_values first, later;
+    world_steps(world, 1);
+    ck_assert(brunt_world_barrier(world, &first) && first.seen);
+    world_steps(world, 2);
+    world_copy_state(world, fresh);
+    ck_assert(brunt_world_barrier(fresh, &later) && later.seen);
+    ck_assert_double_eq(later.width, first.width);
+    world_steps(world, 2), world_steps(fresh, 2);
+    ck_assert_uint_eq(brunt_world_hash(world), brunt_world_hash(fresh));
+    brunt_world_destroy(world), brunt_world_destroy(fresh);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("static");
     ADD_LOOP(hangs, 8);
@@ -492,6 +521,7 @@ int main(void) {
     ADD_LOOP(cut_back, 2);
     ADD_LOOP(threads, 1);
     ADD_LOOP(restart, 1);
+    ADD_LOOP(restart_by_penalties, 1);
     return suite_main(suite);
 }
 #endif
