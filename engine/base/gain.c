@@ -7,7 +7,10 @@
 enum { WINDOW_PHASES = 32, FIRST_SHARED = 4 };
 static const double WINDOW = 5e-3, WHOLE_WINDOW = 50e-3; // [s] of so many phases at least; of how many ever
 static const double MEMORY = 0.1;                        // [s] that the way in use is known by
-static const double FIRST_PAUSE = 12, PAUSE = 100;       // until the other way is tried, over what a trial took
+// Of the work in phases, that they take: threads that get below it are not left for a trial. One thread takes 1, or
+// somewhat less where threads that share a memory make work of waiting for it.
+static const double SURE = 0.6;
+static const double FIRST_PAUSE = 12, PAUSE = 100; // until the other way is tried, over what a trial took
 
 // Open addressing: where a task is, or is to be; -1 when the table is full.
 static int32_t place_of(const brunt_gain *gain, brunt_task_fn *task) {
@@ -45,7 +48,8 @@ static void decide(brunt_gain_size *s, double now) {
         s->next = now + s->pause * s->taken;
         s->together ^= stays;
         s->trial = false;
-    } else if (now >= s->next || (other->expected > 0 && rate(own) > rate(other))) { // time, or reason to
+    } else if (!(s->together && rate(own) < SURE) &&
+               (now >= s->next || (other->expected > 0 && rate(own) > rate(other)))) { // time, or reason to
         s->together = !s->together;
         s->trial = true;
     }

@@ -15,7 +15,8 @@ typedef struct machine {
     double wake;            // [s]
 } machine;
 
-static const machine quiet = {1, 1 / 1.9, 8e-6}, busy = {4, 11, 4e-3}, loses = {1, 1.2, 0}, alike = {1, 1, 0};
+static const machine quiet = {1, 1 / 1.9, 8e-6}, busy = {4, 11, 4e-3}, loses = {1, 1.2, 0}, meagre = {1, 1 / 1.4, 0},
+                     alike = {1, 1, 0};
 
 static double phase_time(const machine *m, bool together, double work) {
     return together ? m->together * work + m->wake : m->alone * work;
@@ -67,19 +68,28 @@ END_TEST
 
 // A machine that others begin to use, and leave again: it is noticed in both directions.
 START_TEST(machines_change) {
-    static const double some[] = {70e-6, 2e-3};
-    for (int k = 0; k < 2; k++) {
+    static const double some[] = {70e-6, 2e-3, 2e-3};
+    for (int k = 0; k < 3; k++) {
         brunt_gain gain = {0};
         stay at = {0};
         for (int turn = 0; turn < 6; turn++) {
             stay one = {.now = at.now};
-            stay_on(&gain, turn % 2 ? &busy : &quiet, some[k], 20, &one);
+            stay_on(&gain, turn % 2 ? &busy : k < 2 ? &quiet : &meagre, some[k], 20, &one);
             at.now = one.now;
             printf("  %.0e s, %s: %.3f of the quicker way\n", some[k], turn % 2 ? "busy" : "quiet",
                    one.taken / one.best);
             ck_assert_double_le(one.taken, 1.12 * one.best);
         }
     }
+}
+END_TEST
+
+// Where threads share all but a rest of the work, the other way is not tried at all.
+START_TEST(what_is_sure_is_not_tried) {
+    brunt_gain gain = {0};
+    stay at = {0};
+    stay_on(&gain, &quiet, 2e-3, 20, &at);
+    ck_assert_int_eq(at.together, at.phases);
 }
 END_TEST
 
@@ -267,6 +277,7 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, the_quicker_way_is_found);
     tcase_add_test(tests, machines_change);
+    tcase_add_test(tests, what_is_sure_is_not_tried);
     tcase_add_test(tests, pauses_of_the_machine_are_borne);
     tcase_add_test(tests, rare_waits_count);
     tcase_add_test(tests, costs_survive_a_pause);
