@@ -11,8 +11,8 @@
 enum { JACOBI_GRAIN = 2048, ROW_GRAIN = 256, SIZE_GRAIN = 1024 };
 // Solutions read V from numbers of half the length, four at a time, which reach beyond the last.
 enum { BEYOND = 4 };
+typedef double two __attribute__((vector_size(16)));
 typedef double four __attribute__((vector_size(32)));
-typedef float four_short __attribute__((vector_size(16)));
 
 void brunt_incomplete_free(brunt_incomplete *f) {
     void *const all[] = {f->order, f->place, f->turn,    f->upper, f->lower, f->after, f->before, f->source, f->twin,
@@ -341,53 +341,80 @@ static void apply_jacobi(void *context, int64_t begin, int64_t end, int worker) 
         }
 }
 
-// sum = the blocks from .. to - 1 of a row times what their columns have.
-BRUNT_INLINE void gather(int dim, const float *v, const int32_t *column, int64_t from, int64_t to, const double *x,
-                         double sum[3]) {
-    four s[3] = {{0}, {0}, {0}};
-    for (int64_t k = from; k < to; k++) {
-        const double *y = x + (int64_t)column[k] * dim;
-        four_short part[3];
-        if (dim == 2) {
-            memcpy(part, v + 4 * k, sizeof *part);
-            s[k & 1] += __builtin_convertvector(part[0], four) * (four){y[0], y[1], y[0], y[1]};
-            continue;
-        }
-        for (int j = 0; j < 3; j++) {
-            memcpy(part + j, v + 9 * k + 3 * j, sizeof *part);
-            s[j] += __builtin_convertvector(part[j], four) * y[j];
-        }
+// Written out: a conversion of vectors becomes five instructions where this is one.
+BRUNT_INLINE four lengthen(const float *v) { return (four){v[0], v[1], v[2], v[3]}; }
+
+BRUNT_INLINE four times_2(const float *v, const double *y) { return lengthen(v) * (four){y[0], y[1], y[0], y[1]}; }
+
+// The blocks from .. to - 1 of a row times what their columns have; each row waits for the one before, so that sums
+// stay in registers.
+BRUNT_INLINE two gather_2(const float *v, const int32_t *column, int64_t from, int64_t to, const double *x) {
+    four even = {0}, odd = {0};
+    int64_t k = from;
+    for (; k + 2 <= to; k += 2) {
+        even += times_2(v + 4 * k, x + 2 * (int64_t)column[k]);
+        odd += times_2(v + 4 * (k + 1), x + 2 * (int64_t)column[k + 1]);
     }
-    s[0] += s[1];
-    if (dim == 2)
-        sum[0] = s[0][0] + s[0][1], sum[1] = s[0][2] + s[0][3];
-    else
-        for (int i = 0; i < 3; i++) sum[i] = s[0][i] + s[2][i];
+    if (k < to) even += times_2(v + 4 * k, x + 2 * (int64_t)column[k]);
+    even += odd;
+    return (two){even[0], even[2]} + (two){even[1], even[3]};
 }
 
-// (I + V)' y = r from the first place of a piece to its last.
-BRUNT_INLINE void substitute_down(const apply_work *w, int32_t begin, int32_t end, int dim) {
+BRUNT_INLINE four gather_3(const float *v, const int32_t *column, int64_t from, int64_t to, const double *x) {
+    four s[3] = {{0}, {0}, {0}};
+    for (int64_t k = from; k < to; k++) {
+        const double *y = x + 3 * (int64_t)column[k];
+        for (int j = 0; j < 3; j++) s[j] += lengthen(v + 9 * k + 3 * j) * y[j];
+    }
+    return s[0] + s[1] + s[2];
+}
+
+// (I + V)' y = r from the first place of a piece to its last. What is read as two is written as two: a store that a
+// load of other width waits for costs more than the row.
+static void substitute_down_2(const apply_work *w, int32_t begin, int32_t end) {
     const brunt_incomplete *f = w->f;
     for (int64_t p = begin; p < end; p++) {
-        const double *r = w->r + (int64_t)f->order[p] * dim;
-        double s[3];
-        gather(dim, f->left, f->before, f->lower[p], f->lower[p + 1], f->work, s);
-        for (int i = 0; i < dim; i++) f->work[p * dim + i] = f->size[p] * r[i] - s[i];
+        two r;
+        memcpy(&r, w->r + 2 * (int64_t)f->order[p], sizeof r);
+        r = f->size[p] * r - gather_2(f->left, f->before, f->lower[p], f->lower[p + 1], f->work);
+        memcpy(f->work + 2 * p, &r, sizeof r);
+    }
+}
+
+static void substitute_down_3(const apply_work *w, int32_t begin, int32_t end) {
+    const brunt_incomplete *f = w->f;
+    for (int64_t p = begin; p < end; p++) {
+        const double *r = w->r + 3 * (int64_t)f->order[p];
+        const four s = gather_3(f->left, f->before, f->lower[p], f->lower[p + 1], f->work);
+        for (int i = 0; i < 3; i++) f->work[3 * p + i] = f->size[p] * r[i] - s[i];
     }
 }
 
 // D (I + V) z = y from the last to the first.
-BRUNT_INLINE void substitute_up(const apply_work *w, int32_t begin, int32_t end, int dim) {
+static void substitute_up_2(const apply_work *w, int32_t begin, int32_t end) {
     const brunt_incomplete *f = w->f;
     for (int64_t p = end - 1; p >= begin; p--) {
-        const double *inverse = f->inverse + p * dim * dim;
-        double *y = f->work + p * dim, *z = w->z + (int64_t)f->order[p] * dim, s[3], x[3];
-        gather(dim, f->right, f->after, f->upper[p], f->upper[p + 1], f->work, s);
-        for (int i = 0; i < dim; i++) {
+        const double *inverse = f->inverse + 4 * p, *y = f->work + 2 * p;
+        two x = -gather_2(f->right, f->after, f->upper[p], f->upper[p + 1], f->work);
+        x += (two){inverse[0], inverse[2]} * y[0];
+        x += (two){inverse[1], inverse[3]} * y[1];
+        memcpy(f->work + 2 * p, &x, sizeof x);
+        x *= f->size[p];
+        memcpy(w->z + 2 * (int64_t)f->order[p], &x, sizeof x);
+    }
+}
+
+static void substitute_up_3(const apply_work *w, int32_t begin, int32_t end) {
+    const brunt_incomplete *f = w->f;
+    for (int64_t p = end - 1; p >= begin; p--) {
+        const double *inverse = f->inverse + 9 * p;
+        const four s = gather_3(f->right, f->after, f->upper[p], f->upper[p + 1], f->work);
+        double *y = f->work + 3 * p, *z = w->z + 3 * (int64_t)f->order[p], x[3];
+        for (int i = 0; i < 3; i++) {
             x[i] = -s[i];
-            for (int j = 0; j < dim; j++) x[i] += inverse[i * dim + j] * y[j];
+            for (int j = 0; j < 3; j++) x[i] += inverse[i * 3 + j] * y[j];
         }
-        for (int i = 0; i < dim; i++) y[i] = x[i], z[i] = f->size[p] * x[i];
+        for (int i = 0; i < 3; i++) y[i] = x[i], z[i] = f->size[p] * x[i];
     }
 }
 
@@ -398,9 +425,9 @@ static void substitute_pieces(void *context, int64_t begin, int64_t end, int wor
     for (int64_t s = begin; s < end; s++) {
         const int32_t *first = w->f->first + w->piece + s;
         if (w->up)
-            flat ? substitute_up(w, first[0], first[1], 2) : substitute_up(w, first[0], first[1], 3);
+            flat ? substitute_up_2(w, first[0], first[1]) : substitute_up_3(w, first[0], first[1]);
         else
-            flat ? substitute_down(w, first[0], first[1], 2) : substitute_down(w, first[0], first[1], 3);
+            flat ? substitute_down_2(w, first[0], first[1]) : substitute_down_3(w, first[0], first[1]);
     }
 }
 

@@ -109,12 +109,11 @@ static brunt_linear_status pcg_iterate(brunt_linear *s, const brunt_team *team, 
     const double curvature = brunt_dot(team, n, g->p, g->q, g->sums);
     if (!(curvature > 0 && isfinite(curvature))) return not_definite(s, "p.Ap", curvature, error);
     const double a = at->rz / curvature;
-    brunt_add_scaled(team, n, a, g->p, x);
     brunt_add_scaled(team, n, -a, g->q, g->r);
     brunt_incomplete_apply(&g->factor, team, g->whole, g->r, g->z);
     const double next = brunt_dot(team, n, g->r, g->z, g->sums);
     if (!(next >= 0 && isfinite(next))) return not_definite(s, "r.z", next, error);
-    brunt_scale_add(team, n, next / at->rz, g->z, g->p);
+    brunt_add_and_turn(team, n, a, g->p, x, next / at->rz, g->z);
     at->energy += a * at->rz, at->gain = a * next;
     at->rz = next;
     s->report.iterations++;

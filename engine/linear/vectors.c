@@ -4,9 +4,9 @@ enum { GRAIN = 1 }; // pieces that a thread takes at a time: some microseconds
 
 typedef struct vector_work {
     int64_t count;
-    double a;
+    double a, b;
     const double *x;
-    double *y;
+    double *y, *p;
     const double *z;
     double *sums;
 } vector_work;
@@ -48,14 +48,18 @@ void brunt_add_scaled(const brunt_team *team, int64_t count, double a, const dou
     brunt_parallel(team->threads, brunt_sum_pieces(count), GRAIN, add_pieces, &work, team->timer);
 }
 
-static void scale_pieces(void *context, int64_t begin, int64_t end, int worker) {
+static void turn_pieces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const vector_work *w = context;
     const int64_t to = end * BRUNT_SUM_PIECE < w->count ? end * BRUNT_SUM_PIECE : w->count;
-    for (int64_t i = begin * BRUNT_SUM_PIECE; i < to; i++) w->y[i] = w->x[i] + w->a * w->y[i];
+    for (int64_t i = begin * BRUNT_SUM_PIECE; i < to; i++) {
+        w->y[i] += w->a * w->p[i];
+        w->p[i] = w->z[i] + w->b * w->p[i];
+    }
 }
 
-void brunt_scale_add(const brunt_team *team, int64_t count, double a, const double *x, double *y) {
-    vector_work work = {.count = count, .a = a, .x = x, .y = y};
-    brunt_parallel(team->threads, brunt_sum_pieces(count), GRAIN, scale_pieces, &work, team->timer);
+void brunt_add_and_turn(const brunt_team *team, int64_t count, double a, double *p, double *y, double b,
+                        const double *z) {
+    vector_work work = {.count = count, .a = a, .b = b, .p = p, .y = y, .z = z};
+    brunt_parallel(team->threads, brunt_sum_pieces(count), GRAIN, turn_pieces, &work, team->timer);
 }

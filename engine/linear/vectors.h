@@ -12,5 +12,6 @@ static inline int64_t brunt_sum_pieces(int64_t count) { return (count + BRUNT_SU
 double brunt_dot(const brunt_team *team, int64_t count, const double *a, const double *b, double *sums);
 // y += a x
 void brunt_add_scaled(const brunt_team *team, int64_t count, double a, const double *x, double *y);
-// y = x + a y
-void brunt_scale_add(const brunt_team *team, int64_t count, double a, const double *x, double *y);
+// y += a p, and then p = z + b p: one pass over p
+void brunt_add_and_turn(const brunt_team *team, int64_t count, double a, double *p, double *y, double b,
+                        const double *z);
