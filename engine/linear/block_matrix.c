@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "base/simd.h"
+#include "linear/wide.h"
 
 enum { PIECE = 40000 }; // entries that a thread reads at a time: some 20 us
 
@@ -68,25 +68,42 @@ void brunt_block_matrix_add(brunt_block_matrix *m, const int32_t *node, int coun
         add_rows(m, node, order, count, dense, 3);
 }
 
+BRUNT_INLINE four times_2(const double *v, const double *p) { return four_load(v) * (four){p[0], p[1], p[0], p[1]}; }
+
 static void multiply_2(const brunt_block_matrix *m, const double *x, double *y, int64_t row) {
-    double a = 0, b = 0;
-    for (int64_t k = m->first[row]; k < m->first[row + 1]; k++) {
-        const double *v = m->value + 4 * k, *p = x + 2 * (int64_t)m->column[k];
-        a += v[0] * p[0] + v[1] * p[1];
-        b += v[2] * p[0] + v[3] * p[1];
+    four even = {0}, odd = {0};
+    const int64_t end = m->first[row + 1];
+    int64_t k = m->first[row];
+    for (; k + 2 <= end; k += 2) {
+        even += times_2(m->value + 4 * k, x + 2 * (int64_t)m->column[k]);
+        odd += times_2(m->value + 4 * (k + 1), x + 2 * (int64_t)m->column[k + 1]);
     }
-    y[2 * row] = a, y[2 * row + 1] = b;
+    if (k < end) even += times_2(m->value + 4 * k, x + 2 * (int64_t)m->column[k]);
+    even += odd;
+    y[2 * row] = even[0] + even[1], y[2 * row + 1] = even[2] + even[3];
+}
+
+// Rows of a block side by side: the first two with a number beyond, the last with one before.
+BRUNT_INLINE void add_times_3(four s[3], const double *v, const double *p) {
+    const four high = {p[0], p[1], p[2], 0}, low = {0, p[0], p[1], p[2]};
+    s[0] += four_load(v) * high;
+    s[1] += four_load(v + 3) * high;
+    s[2] += four_load(v + 5) * low;
 }
 
 static void multiply_3(const brunt_block_matrix *m, const double *x, double *y, int64_t row) {
-    double a = 0, b = 0, c = 0;
-    for (int64_t k = m->first[row]; k < m->first[row + 1]; k++) {
-        const double *v = m->value + 9 * k, *p = x + 3 * (int64_t)m->column[k];
-        a += v[0] * p[0] + v[1] * p[1] + v[2] * p[2];
-        b += v[3] * p[0] + v[4] * p[1] + v[5] * p[2];
-        c += v[6] * p[0] + v[7] * p[1] + v[8] * p[2];
+    four even[3] = {{0}, {0}, {0}}, odd[3] = {{0}, {0}, {0}};
+    const int64_t end = m->first[row + 1];
+    int64_t k = m->first[row];
+    for (; k + 2 <= end; k += 2) {
+        add_times_3(even, m->value + 9 * k, x + 3 * (int64_t)m->column[k]);
+        add_times_3(odd, m->value + 9 * (k + 1), x + 3 * (int64_t)m->column[k + 1]);
     }
-    y[3 * row] = a, y[3 * row + 1] = b, y[3 * row + 2] = c;
+    if (k < end) add_times_3(even, m->value + 9 * k, x + 3 * (int64_t)m->column[k]);
+    for (int i = 0; i < 3; i++) {
+        const four s = even[i] + odd[i];
+        y[3 * row + i] = i < 2 ? s[0] + s[1] + s[2] : s[1] + s[2] + s[3];
+    }
 }
 
 static void multiply_rows(void *context, int64_t begin, int64_t end, int worker) {

@@ -6,13 +6,11 @@
 #include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/simd.h"
+#include "linear/wide.h"
 
 enum { JACOBI_GRAIN = 2048, ROW_GRAIN = 256, SIZE_GRAIN = 1024 };
 // Solutions read V from numbers of half the length, four at a time, which reach beyond the last.
 enum { BEYOND = 4 };
-typedef double two __attribute__((vector_size(16)));
-typedef double four __attribute__((vector_size(32)));
 
 void brunt_incomplete_free(brunt_incomplete *f) {
     void *const all[] = {f->order, f->place, f->turn,    f->upper, f->lower, f->after, f->before, f->source, f->twin,
@@ -40,7 +38,7 @@ static int reserve_arrays(brunt_incomplete *f, const brunt_team *team, brunt_err
            BRUNT_CAPACITY(f->size, nodes, 0, "rows of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->right, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->left, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
-           BRUNT_CAPACITY(f->work, nodes * dim, 0, "values of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->work, nodes * (dim == 2 ? 2 : 4), 0, "values of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->slot, nodes * (size_t)team->threads, 0, "rows of an incomplete factor", error);
 }
 
@@ -143,7 +141,7 @@ static void take_pattern(brunt_incomplete *f, const brunt_team *team) {
 int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, bool whole,
                              int slabs, brunt_error *error) {
     f->a = a;
-    if (BRUNT_CAPACITY(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim), 0,
+    if (BRUNT_CAPACITY(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim) + 1, 0,
                        "values of the diagonal of a matrix", error))
         return BRUNT_FAILED;
     if (!whole) return BRUNT_OK;
@@ -175,17 +173,59 @@ static bool invert_3(const double *a, double *b) {
 
 static bool invert(int dim, const double *a, double *b) { return dim == 2 ? invert_2(a, b) : invert_3(a, b); }
 
-typedef enum product_form { TIMES, TRANSPOSED_TIMES, MINUS_TIMES } product_form;
-
-// c = a b, c = a' b or c -= a b of blocks; dim and form are literals where it is called.
-BRUNT_INLINE void multiply(int dim, product_form form, const double *restrict a, const double *restrict b,
+// c = a b or (transposed) a' b of blocks; dim and transposed are literals where it is called.
+BRUNT_INLINE void multiply(int dim, bool transposed, const double *restrict a, const double *restrict b,
                            double *restrict c) {
     for (int i = 0; i < dim; i++)
         for (int j = 0; j < dim; j++) {
-            double s = 0;
-            for (int k = 0; k < dim; k++) s += a[form == TRANSPOSED_TIMES ? k * dim + i : i * dim + k] * b[k * dim + j];
-            c[i * dim + j] = form == MINUS_TIMES ? c[i * dim + j] - s : s;
+            c[i * dim + j] = 0;
+            for (int k = 0; k < dim; k++) c[i * dim + j] += a[transposed ? k * dim + i : i * dim + k] * b[k * dim + j];
         }
+}
+
+// A block as it multiplies many others from the left: its column k beside the numbers of a product, four of them at a
+// time, where row k of the other block is; in 3D the ninth is alone.
+typedef struct left_block {
+    four first[3], second[3];
+    double last[3];
+} left_block;
+
+BRUNT_INLINE left_block take_left(int dim, const double *t) {
+    left_block l;
+    for (int k = 0; k < dim; k++) {
+        if (dim == 2) {
+            l.first[k] = (four){t[k], t[k], t[2 + k], t[2 + k]};
+            continue;
+        }
+        l.first[k] = (four){t[k], t[k], t[k], t[3 + k]};
+        l.second[k] = (four){t[3 + k], t[3 + k], t[6 + k], t[6 + k]};
+        l.last[k] = t[6 + k];
+    }
+    return l;
+}
+
+// c -= l v
+BRUNT_INLINE void subtract_2(const left_block *l, const double *v, double *c) {
+    four s = l->first[0] * (four){v[0], v[1], v[0], v[1]};
+    s += l->first[1] * (four){v[2], v[3], v[2], v[3]};
+    four_store(c, four_load(c) - s);
+}
+
+BRUNT_INLINE void subtract_3(const left_block *l, const double *v, double *c) {
+    const four a = four_load(v), b = four_load(v + 3), d = four_load(v + 5);
+    four s = l->first[0] * __builtin_shufflevector(a, a, 0, 1, 2, 0);
+    four t = l->second[0] * __builtin_shufflevector(a, a, 1, 2, 0, 1);
+    s += l->first[1] * __builtin_shufflevector(b, b, 0, 1, 2, 0);
+    t += l->second[1] * __builtin_shufflevector(b, b, 1, 2, 0, 1);
+    s += l->first[2] * __builtin_shufflevector(d, d, 1, 2, 3, 1);
+    t += l->second[2] * __builtin_shufflevector(d, d, 2, 3, 1, 2);
+    four_store(c, four_load(c) - s);
+    four_store(c + 4, four_load(c + 4) - t);
+    c[8] -= l->last[0] * v[2] + l->last[1] * v[5] + l->last[2] * v[8];
+}
+
+BRUNT_INLINE void subtract(int dim, const left_block *l, const double *v, double *c) {
+    dim == 2 ? subtract_2(l, v, c) : subtract_3(l, v, c);
 }
 
 // Blocks of V as a solution reads them: in 2D row by row, in 3D column by column.
@@ -216,12 +256,13 @@ BRUNT_INLINE bool factor_row(brunt_incomplete *f, const brunt_block_matrix *a, i
         const double *v = f->v + f->upper[above] * size;
         int64_t c = f->twin[k];
         double t[9];
-        multiply(dim, TRANSPOSED_TIMES, v + c * size, f->d + above * size, t);
-        multiply(dim, MINUS_TIMES, t, v + c * size, pivot);
+        multiply(dim, true, v + c * size, f->d + above * size, t);
+        const left_block left = take_left(dim, t);
+        subtract(dim, &left, v + c * size, pivot);
         shorten(dim, true, v + c * size, f->left + k * size);
         for (c++; c < end; c++) {
             const int32_t at = slot[column[c]];
-            if (at) multiply(dim, MINUS_TIMES, t, v + c * size, row + (int64_t)(at - 1) * size);
+            if (at) subtract(dim, &left, v + c * size, row + (int64_t)(at - 1) * size);
         }
     }
     for (int64_t c = 0; c < columns; c++) slot[after[c]] = 0;
@@ -229,7 +270,7 @@ BRUNT_INLINE bool factor_row(brunt_incomplete *f, const brunt_block_matrix *a, i
     for (int64_t c = 0; c < columns; c++) {
         double w[9];
         memcpy(w, row + c * size, (size_t)size * sizeof *w);
-        multiply(dim, TIMES, inverse, w, row + c * size);
+        multiply(dim, false, inverse, w, row + c * size);
         shorten(dim, false, row + c * size, f->right + (f->upper[p] + c) * size);
     }
     return true;
@@ -341,80 +382,82 @@ static void apply_jacobi(void *context, int64_t begin, int64_t end, int worker) 
         }
 }
 
-// Written out: a conversion of vectors becomes five instructions where this is one.
-BRUNT_INLINE four lengthen(const float *v) { return (four){v[0], v[1], v[2], v[3]}; }
+BRUNT_INLINE four times_2(const float *v, const double *y) {
+    return four_of_floats(v) * (four){y[0], y[1], y[0], y[1]};
+}
 
-BRUNT_INLINE four times_2(const float *v, const double *y) { return lengthen(v) * (four){y[0], y[1], y[0], y[1]}; }
-
-// The blocks from .. to - 1 of a row times what their columns have; each row waits for the one before, so that sums
-// stay in registers.
-BRUNT_INLINE two gather_2(const float *v, const int32_t *column, int64_t from, int64_t to, const double *x) {
+// The `count` blocks of a row from block k on, or (by -1) down from it, times what their columns have. Each row waits
+// for the one before it: the nearest column comes last, and sums are in two chains and in registers.
+BRUNT_INLINE two gather_2(const float *v, const int32_t *column, int64_t k, int64_t count, int by, const double *x) {
     four even = {0}, odd = {0};
-    int64_t k = from;
-    for (; k + 2 <= to; k += 2) {
+    for (; count > 1; k += 2 * by, count -= 2) {
         even += times_2(v + 4 * k, x + 2 * (int64_t)column[k]);
-        odd += times_2(v + 4 * (k + 1), x + 2 * (int64_t)column[k + 1]);
+        odd += times_2(v + 4 * (k + by), x + 2 * (int64_t)column[k + by]);
     }
-    if (k < to) even += times_2(v + 4 * k, x + 2 * (int64_t)column[k]);
+    if (count > 0) even += times_2(v + 4 * k, x + 2 * (int64_t)column[k]);
     even += odd;
     return (two){even[0], even[2]} + (two){even[1], even[3]};
 }
 
-BRUNT_INLINE four gather_3(const float *v, const int32_t *column, int64_t from, int64_t to, const double *x) {
-    four s[3] = {{0}, {0}, {0}};
-    for (int64_t k = from; k < to; k++) {
-        const double *y = x + 3 * (int64_t)column[k];
-        for (int j = 0; j < 3; j++) s[j] += lengthen(v + 9 * k + 3 * j) * y[j];
-    }
-    return s[0] + s[1] + s[2];
+BRUNT_INLINE void add_times_3(four s[3], const float *v, const double *y) {
+    for (int j = 0; j < 3; j++) s[j] += four_of_floats(v + 3 * j) * y[j];
 }
 
-// (I + V)' y = r from the first place of a piece to its last. What is read as two is written as two: a store that a
-// load of other width waits for costs more than the row.
+BRUNT_INLINE four gather_3(const float *v, const int32_t *column, int64_t k, int64_t count, int by, const double *x) {
+    four even[3] = {{0}, {0}, {0}}, odd[3] = {{0}, {0}, {0}};
+    for (; count > 1; k += 2 * by, count -= 2) {
+        add_times_3(even, v + 9 * k, x + 4 * (int64_t)column[k]);
+        add_times_3(odd, v + 9 * (k + by), x + 4 * (int64_t)column[k + by]);
+    }
+    if (count > 0) add_times_3(even, v + 9 * k, x + 4 * (int64_t)column[k]);
+    return (even[0] + odd[0]) + (even[1] + odd[1]) + (even[2] + odd[2]);
+}
+
+// (I + V)' y = r from the first place of a piece to its last. A row is written as wide as it is read, or wider: what a
+// load has to put together of two stores costs more than the row.
 static void substitute_down_2(const apply_work *w, int32_t begin, int32_t end) {
     const brunt_incomplete *f = w->f;
     for (int64_t p = begin; p < end; p++) {
-        two r;
-        memcpy(&r, w->r + 2 * (int64_t)f->order[p], sizeof r);
-        r = f->size[p] * r - gather_2(f->left, f->before, f->lower[p], f->lower[p + 1], f->work);
-        memcpy(f->work + 2 * p, &r, sizeof r);
+        const int64_t from = f->lower[p];
+        const two r = f->size[p] * two_load(w->r + 2 * (int64_t)f->order[p]);
+        two_store(f->work + 2 * p, r - gather_2(f->left, f->before, from, f->lower[p + 1] - from, 1, f->work));
     }
 }
 
 static void substitute_down_3(const apply_work *w, int32_t begin, int32_t end) {
     const brunt_incomplete *f = w->f;
     for (int64_t p = begin; p < end; p++) {
+        const int64_t from = f->lower[p];
         const double *r = w->r + 3 * (int64_t)f->order[p];
-        const four s = gather_3(f->left, f->before, f->lower[p], f->lower[p + 1], f->work);
-        for (int i = 0; i < 3; i++) f->work[3 * p + i] = f->size[p] * r[i] - s[i];
+        const four scaled = f->size[p] * (four){r[0], r[1], r[2], 0};
+        four_store(f->work + 4 * p, scaled - gather_3(f->left, f->before, from, f->lower[p + 1] - from, 1, f->work));
     }
 }
 
-// D (I + V) z = y from the last to the first.
+// D (I + V) z = y from the last to the first; blocks of D are symmetric.
 static void substitute_up_2(const apply_work *w, int32_t begin, int32_t end) {
     const brunt_incomplete *f = w->f;
     for (int64_t p = end - 1; p >= begin; p--) {
+        const int64_t to = f->upper[p + 1];
         const double *inverse = f->inverse + 4 * p, *y = f->work + 2 * p;
-        two x = -gather_2(f->right, f->after, f->upper[p], f->upper[p + 1], f->work);
-        x += (two){inverse[0], inverse[2]} * y[0];
-        x += (two){inverse[1], inverse[3]} * y[1];
-        memcpy(f->work + 2 * p, &x, sizeof x);
-        x *= f->size[p];
-        memcpy(w->z + 2 * (int64_t)f->order[p], &x, sizeof x);
+        two x = two_load(inverse) * y[0] + two_load(inverse + 2) * y[1];
+        x -= gather_2(f->right, f->after, to - 1, to - f->upper[p], -1, f->work);
+        two_store(f->work + 2 * p, x);
+        two_store(w->z + 2 * (int64_t)f->order[p], f->size[p] * x);
     }
 }
 
 static void substitute_up_3(const apply_work *w, int32_t begin, int32_t end) {
     const brunt_incomplete *f = w->f;
     for (int64_t p = end - 1; p >= begin; p--) {
-        const double *inverse = f->inverse + 9 * p;
-        const four s = gather_3(f->right, f->after, f->upper[p], f->upper[p + 1], f->work);
-        double *y = f->work + 3 * p, *z = w->z + 3 * (int64_t)f->order[p], x[3];
-        for (int i = 0; i < 3; i++) {
-            x[i] = -s[i];
-            for (int j = 0; j < 3; j++) x[i] += inverse[i * 3 + j] * y[j];
-        }
-        for (int i = 0; i < 3; i++) y[i] = x[i], z[i] = f->size[p] * x[i];
+        const int64_t to = f->upper[p + 1];
+        const double *inverse = f->inverse + 9 * p, *y = f->work + 4 * p;
+        double *z = w->z + 3 * (int64_t)f->order[p];
+        four x = four_load(inverse) * y[0] + four_load(inverse + 3) * y[1] + four_load(inverse + 6) * y[2];
+        x -= gather_3(f->right, f->after, to - 1, to - f->upper[p], -1, f->work);
+        four_store(f->work + 4 * p, x);
+        x *= f->size[p];
+        z[0] = x[0], z[1] = x[1], z[2] = x[2];
     }
 }
 
