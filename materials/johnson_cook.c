@@ -9,6 +9,10 @@
 //
 // Each of B, C and taylor_quinney may be 0, and is then not computed: no power, no logarithm, and a temperature that
 // stays is one constant and no state.
+//
+// A step changes strain and temperature by little, and the search for the increment its rate by less and less: powers
+// and the logarithm are computed from those at the start of the step, or of the search, by series, and anew only where
+// a point is far from them. Which way is taken is each point's own affair, so that its bits are.
 #include "materials/return_mapping.h"
 
 enum {
@@ -68,18 +72,70 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     return NULL;
 }
 
-// 1 - T*^m, and its derivative with respect to T.
-BRUNT_INLINE lanes softening(const real *k, lanes temperature, lanes *slope) {
-    lanes zero = lanes_set(0), one = lanes_set(1);
-    lanes t = lanes_min(lanes_max((temperature - k[REFERENCE]) * k[INVERSE_RANGE], zero), one);
-    if (k[SOFTENING] == 1) {
-        *slope = lanes_select((t > 0) & (t < 1), -k[INVERSE_RANGE] * one, zero);
-        return 1 - t;
-    }
-    lanes tm = power(t, k[SOFTENING]);
-    *slope = lanes_select((t > 0) & (t < 1), -k[SOFTENING] * k[INVERSE_RANGE] * tm / lanes_select(t > 0, t, one), zero);
-    return 1 - tm;
+// ------------------------------------------------------------------------- powers and logarithms beside known ones
+
+#ifdef BRUNT_FLOAT
+enum { BINOMIAL_TERMS = 4, LOGARITHM_TERMS = 3 };
+#else
+enum { BINOMIAL_TERMS = 8, LOGARITHM_TERMS = 7 };
+#endif
+
+// (1 + r)^y = 1 + c1 r (1 + c2 r (1 + ...)), c_k = (y - k + 1) / k; to rounding for |r| <= reach.
+typedef struct binomial {
+    real exponent, reach, c[BINOMIAL_TERMS];
+} binomial;
+
+static binomial binomial_of(real exponent) {
+    binomial b = {.exponent = exponent, .reach = (real)(1.0 / 64) / (exponent > 1 ? exponent : 1)};
+    for (int k = 0; k < BINOMIAL_TERMS; k++) b.c[k] = (exponent - (real)k) / (real)(k + 1);
+    return b;
 }
+
+// What is known: of x its power, or its logarithm.
+typedef struct known {
+    lanes x, inverse, value; // inverse: 1 / x
+} known;
+
+// A function and its derivative; that, for a search, to some millionths.
+typedef struct slope_value {
+    lanes value, slope;
+} slope_value;
+
+// x^y for x >= 0; `change`: x less what is known. Right where `wanted`.
+BRUNT_INLINE slope_value power_beside(const binomial *b, known at, lanes x, lanes change, lane_mask wanted) {
+    const lanes r = change * at.inverse;
+    const lane_mask beside = lanes_abs(r) <= b->reach;
+    lanes series = lanes_set(1);
+    for (int k = BINOMIAL_TERMS - 1; k >= 0; k--) series = 1 + b->c[k] * r * series;
+    lanes value = at.value * series, inverse = at.inverse * (1 - r * (1 - r));
+    if (lanes_any(wanted & ~beside)) {
+        value = lanes_select(beside, value, power(x, b->exponent));
+        inverse = lanes_select(beside, inverse, 1 / lanes_max(x, lanes_set(LANES_REAL_MIN)));
+    }
+    return (slope_value){value, b->exponent * value * inverse};
+}
+
+BRUNT_INLINE known power_known(const binomial *b, lanes x) {
+    return (known){x, 1 / lanes_max(x, lanes_set(LANES_REAL_MIN)), power(x, b->exponent)};
+}
+
+// ln x for x > 0, by that of a ratio within 1/8 of 1, ln((1 + z) / (1 - z)) = 2 (z + z^3/3 + ...); where it is
+// computed anew it is what is known from then on.
+BRUNT_INLINE slope_value log_beside(known *at, lanes x, lane_mask wanted) {
+    const lane_mask beside = lanes_abs(x - at->x) <= (real)0.125 * at->x;
+    const lanes half = 1 / (x + at->x), z = (x - at->x) * half, zz = z * z;
+    lanes series = lanes_set((real)(2.0 / (2 * LOGARITHM_TERMS + 1)));
+    for (int k = LOGARITHM_TERMS - 1; k >= 0; k--) series = series * zz + (real)(2.0 / (2 * k + 1));
+    slope_value ln = {at->value + z * series, 2 * half * (1 - z * (1 - z * (1 - z)))};
+    if (!lanes_any(wanted & ~beside)) return ln;
+    at->x = lanes_select(beside, at->x, x);
+    at->value = lanes_select(beside, at->value, lanes_log(x));
+    ln.value = lanes_select(beside, ln.value, at->value);
+    ln.slope = lanes_select(beside, ln.slope, 1 / x);
+    return ln;
+}
+
+// ------------------------------------------------------------------------------------------------- the flow stress
 
 // What of the law there is, as literals but for the last; softens: there is damage.
 typedef struct form {
@@ -87,61 +143,91 @@ typedef struct form {
     bool softens, rated, heats, hardens;
 } form;
 
-// Flow stress at the end of a step with the plastic increment delta, and its slope with delta. The temperature rise is
-// the step's own trapezoid of work, 1/2 delta (q_old + q), q = trial - stiffness delta.
-BRUNT_INLINE lanes flow_stress(form f, const real *k, const j2_point *p, lanes start, lanes inverse_rate_step,
-                               lanes delta, lanes *slope) {
-    lanes one = lanes_set(1), zero = lanes_set(0), tiny = lanes_set(LANES_REAL_MIN);
-    lanes hard = lanes_set(k[STATIC]), hard_slope = zero;
+typedef struct law_step {
+    const real *k;
+    real inverse_rate_step; // 1 / (dt rate0)
+    binomial strain, heat;  // of the exponents
+} law_step;
+
+// A vector of points at the start of its step: temperature; the powers of strain and of T*, and the logarithm of the
+// rate as the search goes on.
+typedef struct flow_start {
+    lanes temperature;
+    known strain, heat, rate;
+} flow_start;
+
+BRUNT_INLINE lanes homologous(const real *k, lanes temperature) {
+    return lanes_min(lanes_max((temperature - k[REFERENCE]) * k[INVERSE_RANGE], lanes_set(0)), lanes_set(1));
+}
+
+// 1 - T*^m at the end of a step, and its derivative with respect to T.
+BRUNT_INLINE slope_value softening(const law_step *law, known start, lanes temperature, lane_mask wanted) {
+    const real *k = law->k;
+    const lanes zero = lanes_set(0), t = homologous(k, temperature);
+    const lane_mask within = (t > 0) & (t < 1);
+    if (k[SOFTENING] == 1) return (slope_value){1 - t, lanes_select(within, -k[INVERSE_RANGE] + zero, zero)};
+    const slope_value tm = power_beside(&law->heat, start, t, t - start.x, wanted);
+    return (slope_value){1 - tm.value, lanes_select(within, -k[INVERSE_RANGE] * tm.slope, zero)};
+}
+
+// Flow stress at the end of a step with the plastic increment delta, and its slope with delta, where `wanted`. The
+// temperature rise is the step's own trapezoid of work, 1/2 delta (q_old + q), q = trial - stiffness delta.
+BRUNT_INLINE slope_value flow_stress(form f, const law_step *law, const j2_point *p, flow_start *start, lanes delta,
+                                     lane_mask wanted) {
+    const real *k = law->k;
+    const lanes one = lanes_set(1), zero = lanes_set(0);
+    slope_value hard = {lanes_set(k[STATIC]), zero}, rate = {one, zero}, soft = {lanes_set(k[COLD_SOFTENING]), zero};
+    lanes heating = zero;
     if (f.hardens) {
-        lanes strain = p->plastic_strain + delta, hardening = k[POWER] * power(strain, k[EXPONENT]);
-        hard = k[STATIC] + hardening, hard_slope = k[EXPONENT] * hardening / lanes_max(strain, tiny);
+        const slope_value h = power_beside(&law->strain, start->strain, p->plastic_strain + delta, delta, wanted);
+        hard.value += k[POWER] * h.value, hard.slope = k[POWER] * h.slope;
     }
-    lanes rate = one, rate_slope = zero;
     if (f.rated) {
-        lanes ratio = delta * inverse_rate_step;
-        lane_mask fast = ratio > 1;
-        rate = 1 + k[RATE] * lanes_log(lanes_select(fast, ratio, one));
-        rate_slope = lanes_select(fast, k[RATE] / lanes_max(delta, tiny), zero);
+        const lanes ratio = delta * law->inverse_rate_step;
+        const lane_mask fast = ratio > 1;
+        const slope_value ln = log_beside(&start->rate, lanes_select(fast, ratio, one), wanted);
+        rate.value = 1 + k[RATE] * ln.value;
+        rate.slope = lanes_select(fast, k[RATE] * law->inverse_rate_step * ln.slope, zero);
     }
-    lanes soft = lanes_set(k[COLD_SOFTENING]), soft_slope = zero, heating = zero;
     if (f.heats) {
-        lanes q = p->q - p->stiffness * delta;
-        lanes temperature = start + (real)0.5 * k[HEATING] * delta * (p->q_old + q);
+        const lanes q = p->q - p->stiffness * delta;
+        const lanes temperature = start->temperature + (real)0.5 * k[HEATING] * delta * (p->q_old + q);
         heating = (real)0.5 * k[HEATING] * (p->q_old + q - p->stiffness * delta);
-        soft = softening(k, temperature, &soft_slope);
+        soft = softening(law, start->heat, temperature, wanted);
     }
-    *slope = hard_slope * rate * soft + hard * rate_slope * soft + hard * rate * soft_slope * heating;
-    return hard * rate * soft;
-}
-
-// What softens the flow stress at the start of a step.
-BRUNT_INLINE lanes start_softening(form f, const real *k, lanes start) {
-    lanes slope;
-    return f.heats ? softening(k, start, &slope) : lanes_set(k[COLD_SOFTENING]);
-}
-
-BRUNT_INLINE lanes start_strength(form f, const real *k, lanes plastic_strain) {
-    return f.hardens ? k[STATIC] + k[POWER] * power(plastic_strain, k[EXPONENT]) : lanes_set(k[STATIC]);
+    return (slope_value){hard.value * rate.value * soft.value,
+                         (hard.slope * rate.value + hard.value * rate.slope) * soft.value +
+                             hard.value * rate.value * soft.slope * heating};
 }
 
 BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const lanes zero = lanes_set(0);
-    const lanes inverse_rate_step = lanes_set(f.rated && points->dt > 0 ? 1 / (points->dt * k[RATE_ZERO]) : 0);
+    const law_step law = {.k = k,
+                          .inverse_rate_step = f.rated && points->dt > 0 ? 1 / (points->dt * k[RATE_ZERO]) : 0,
+                          .strain = binomial_of(k[EXPONENT]),
+                          .heat = binomial_of(k[SOFTENING])};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         j2_point p = j2_trial(f.dim, k, points, i, &record);
         real *temperature = f.heats ? points->state[j2_slot(f.dim, TEMPERATURE)] + i : NULL;
-        lanes delta = zero, q = p.q, start = f.heats ? lanes_load(temperature) : zero, slope;
+        lanes delta = zero, q = p.q, cold = lanes_set(k[COLD_SOFTENING]);
+        flow_start start = {.temperature = zero, .rate = {zero, zero, zero}};
+        if (f.heats) {
+            start.temperature = lanes_load(temperature);
+            start.heat = power_known(&law.heat, homologous(k, start.temperature));
+            cold = 1 - start.heat.value;
+        }
         // Below the static strength without any hardening nothing flows: most vectors of most runs stop here.
         const lanes integrity = j2_integrity(f.softens, points, i);
-        lanes lowest = k[STATIC] * start_softening(f, k, start);
-        if (f.softens) lowest *= integrity;
-        lane_mask plastic = p.q > lowest;
+        if (f.softens) cold *= integrity;
+        lane_mask plastic = p.q > k[STATIC] * cold;
         if (lanes_any(plastic)) {
-            lanes yield = start_strength(f, k, p.plastic_strain) * start_softening(f, k, start);
-            if (f.softens) yield *= integrity;
-            plastic = p.q > yield;
+            lanes yield = lanes_set(k[STATIC]);
+            if (f.hardens) {
+                start.strain = power_known(&law.strain, p.plastic_strain);
+                yield += k[POWER] * start.strain.value;
+            }
+            plastic = p.q > yield * cold;
             if (f.softens)
                 j2_set_softened_stiffness(k, points, i, &p);
             else
@@ -150,9 +236,10 @@ BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_
             lane_mask gone = {0};
             if (f.softens) gone = j2_root_collapse(&root, integrity);
             for (int step = 0; step < J2_ROOT_STEPS && lanes_any(root.active); step++) {
-                q = flow_stress(f, k, &p, start, inverse_rate_step, root.delta, &slope);
-                if (f.softens) q *= integrity, slope *= integrity;
-                j2_root_step(&p, &root, q, slope);
+                slope_value flow = flow_stress(f, &law, &p, &start, root.delta, plastic);
+                if (f.softens) flow.value *= integrity, flow.slope *= integrity;
+                j2_root_step(&p, &root, flow.value, flow.slope);
+                q = flow.value;
             }
             note_first(&record.model, root.active, i);
             delta = lanes_select(plastic, root.delta, zero);
@@ -161,7 +248,7 @@ BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_
             j2_return(f.dim, &p, plastic, q);
         }
         lanes work = j2_store(f.dim, k, points, i, &p, (j2_flow){delta, q}, &record);
-        if (f.heats) lanes_store(temperature, start + k[HEATING] * work);
+        if (f.heats) lanes_store(temperature, start.temperature + k[HEATING] * work);
     }
     return update_end(&record, points, "the plastic increment of the Johnson-Cook law was not found");
 }
@@ -193,8 +280,9 @@ static brunt_update_result update_plain(const real *constants, const brunt_mater
 
 // A temperature that stays: one vector as the heated form has it, for the same bits.
 static void set_temperature(real *constants, double temperature) {
-    lanes slope, soft = softening(constants, lanes_set((real)temperature), &slope);
-    constants[COLD_SOFTENING] = lanes_max_of(soft);
+    const binomial heat = binomial_of(constants[SOFTENING]);
+    const lanes t = homologous(constants, lanes_set((real)temperature));
+    constants[COLD_SOFTENING] = lanes_max_of(1 - power_known(&heat, t).value);
 }
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {

@@ -281,7 +281,10 @@ BRUNT_INLINE void j2_root_step(const j2_point *p, j2_root *root, lanes flow, lan
     lanes next = root->delta + rest / (p->stiffness + slope);
     // The root may lie many decades below its upper bound (a point that hardly yields): halve the exponent, not the
     // interval.
-    lanes middle = lanes_select(root->low > 0, lanes_sqrt(root->low * root->high), (real)1e-3 * root->high);
-    next = lanes_select((next > root->low) & (next < root->high), next, middle);
+    const lane_mask within = (next > root->low) & (next < root->high);
+    if (lanes_any(root->active & ~within)) {
+        const lanes middle = lanes_select(root->low > 0, lanes_sqrt(root->low * root->high), (real)1e-3 * root->high);
+        next = lanes_select(within, next, middle);
+    }
     root->delta = lanes_select(root->active, next, root->delta);
 }
