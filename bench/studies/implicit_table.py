@@ -16,9 +16,9 @@ import subprocess
 import sys
 import tempfile
 
-STEPS = 2
 REPEATS, SHORT = 3, 2  # the middle one of so many runs that take fewer seconds
 SMALL = 5000  # nodes: up to there all lengths of steps and one thread, beyond two of them and two threads
+MEDIUM = 15000  # nodes: up to there ten steps of each length, so that the start counts little; beyond two
 CELL = 0.05
 WAVE = 36.69  # [m/s] of the material below
 
@@ -78,11 +78,11 @@ def bodies_of(dim, method, length, halves):
             "contact: {method: barrier, friction: 0.3}\n")
 
 
-def scene(model, side, courant, solver):
+def scene(model, side, steps, courant, solver):
     dim, method, _ = MODELS[model]
     step = courant * CELL / WAVE
     return SCENE.format(
-        dim=dim, end=STEPS * step * 1.0001, step=step, solver=solver, cell=CELL,
+        dim=dim, end=steps * step * 1.0001, step=step, solver=solver, cell=CELL,
         bodies=bodies_of(dim, method, side * CELL, model.endswith(HALVES)),
         low=corner(dim, 0, 0), up=corner(dim, 0, 1), down=corner(dim, 0, -1))
 
@@ -136,9 +136,9 @@ def row(model, nodes, courant, solver, threads, summary):
 
 HEAD = """# Time of implicit steps, measured
 
-Written by `python3 bench/studies/implicit_table.py`: a block of neo-Hookean material sags on a floor under its weight, two steps of
-each length; material points with quadratic kernels (4 a cell in 2D, 8 in 3D), or elements as wide as a cell. Milliseconds an iteration
-of Newton's method by pass, `step` the whole step over its iterations; iterations a step; iterations of conjugate gradients to 1e-3 for
+Written by `python3 bench/studies/implicit_table.py`: a block of neo-Hookean material sags on a floor under its weight, ten steps of
+each length, two of bodies of more than 15,000 nodes; material points with quadratic kernels (4 a cell in 2D, 8 in 3D), or elements as
+wide as a cell. Milliseconds an iteration of Newton's method by pass, `step` the whole step over its iterations; iterations a step; iterations of conjugate gradients to 1e-3 for
 each of Newton's; peak of the process, its checkpoint among it. One thread: wall clock times the share of a core that the process had.
 Two threads: wall clock of a machine of two cores, of `evaluate` and `matrix` the time that the slower one was at work.
 
@@ -169,9 +169,19 @@ def cheapest(rows):
     return "\n".join(lines) + "\n"
 
 
-def gains(rows):
+def machine_gain(brunt):
+    """What two threads do of what one does, at most: a sentence."""
+    done = subprocess.run([os.path.join(os.path.dirname(brunt), "bench", "bench_roofline")], capture_output=True, text=True, check=False)
+    (read, work), (read_2, work_2) = [tuple(map(float, r)) for r in re.findall(
+        r"[12] threads? +([\d.]+) GB/s .*? ([\d.]+) GFLOP/s", done.stdout)[:2]]
+    return ("On this machine two threads read memory that no cache holds %.2f times as fast as one, and multiply numbers in registers\n"
+            "%.2f times (`bench_roofline`): the matrix and its factor of `pcg` are read, once an iteration of conjugate gradients." %
+            (read_2 / read, work_2 / work))
+
+
+def gains(rows, machine=""):
     """By body, size, step and solver: a step of one thread over one of two."""
-    lines = ["", "## Two threads", "", "A step of one thread over one of two.", "",
+    lines = ["", "## Two threads", "", "A step of one thread over one of two. " + machine, "",
              "| body | nodes | c dt/h | pcg | matrix-free |", "|---" * 5 + "|"]
     steps = {tuple(r[:5]): float(r[12]) for r in rows}
     for key in dict.fromkeys(tuple(r[:3]) for r in rows if r[4] == "2"):
@@ -184,10 +194,10 @@ def place(row):
     return list(MODELS).index(row[0]), int(row[1]), float(row[2]), int(row[4]), SOLVERS.index(row[3])
 
 
-def write(path, rows, end=""):
+def write(path, rows, end="", machine=""):
     rows = sorted(rows, key=place)
     with open(path, "w", encoding="utf-8") as file:
-        file.write(HEAD + "".join("| " + " | ".join(r) + " |\n" for r in rows) + missing(rows) + cheapest(rows) + gains(rows) + end)
+        file.write(HEAD + "".join("| " + " | ".join(r) + " |\n" for r in rows) + missing(rows) + cheapest(rows) + gains(rows, machine) + end)
 
 
 def measured(path):
@@ -301,7 +311,8 @@ def plan(most, limit):
                 for solver, threads in (("pcg", 1), ("pcg", 2), ("matrix-free", 1), ("matrix-free", 2), ("direct", 1)):
                     too_long = solver == "direct" and expected(model, nodes) > limit
                     if nodes <= most and not too_long and (threads == 1 or nodes > SMALL) and (fitted or solver == "pcg"):
-                        yield model, nodes, courant, solver, threads, scene(model, sides[size], courant, solver)
+                        steps = 10 if nodes < MEDIUM else 2
+                        yield model, nodes, courant, solver, threads, scene(model, sides[size], steps, courant, solver)
 
 
 def main():
@@ -318,7 +329,7 @@ def main():
         rows.append(row(*key, run(brunt, text, key[4])))
         print(" ".join(rows[-1]), flush=True)
         write(path, rows)
-    write(path, rows, fit(rows) + auto(brunt, rows))
+    write(path, rows, fit(rows) + auto(brunt, rows), machine_gain(brunt))
 
 
 main()
