@@ -142,6 +142,49 @@ void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry,
     }
 }
 
+// ------------------------------------------------------------------------------------------ what moves on
+
+// The first of the planes that a slot has nodes near to; -1: none.
+static int plane_near(const brunt_grid *grid, const brunt_slot *slot, const brunt_symmetry_plane *symmetry, int count) {
+    for (int m = 0; m < count; m++) {
+        const int first = slot->coord[symmetry[m].axis] * grid->side;
+        if (first <= symmetry[m].node + LAYERS && first + grid->side > symmetry[m].node - LAYERS) return m;
+    }
+    return -1;
+}
+
+void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
+                             double *own) {
+    const brunt_grid *grid = &body->grid;
+    for (int32_t s = 0; s < grid->slot_count; s++) {
+        if (plane_near(grid, &grid->slots[s], symmetry, symmetry_count) < 0) continue;
+        const real *n = brunt_slot_nodes(grid, s);
+        double *to = own + (size_t)s * BRUNT_BLOCK_NODES * 3;
+        for (int k = 0; k < BRUNT_BLOCK_NODES; k++, n += BRUNT_NODE_REALS, to += 3)
+            for (int a = 0; a < 3; a++) to[a] = (double)n[BRUNT_NODE_VELOCITY + a];
+    }
+}
+
+void brunt_symmetry_carry(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
+                          const double *own, double reach, brunt_impulse_account *const *account) {
+    const brunt_grid *grid = &body->grid;
+    for (int32_t s = 0; s < grid->slot_count; s++) {
+        const int m = plane_near(grid, &grid->slots[s], symmetry, symmetry_count);
+        if (m < 0) continue;
+        const real *n = brunt_slot_nodes(grid, s);
+        const double *p = own + (size_t)s * BRUNT_BLOCK_NODES * 3;
+        double turn[3] = {0};
+        for (int k = 0; k < BRUNT_BLOCK_NODES; k++, n += BRUNT_NODE_REALS, p += 3)
+            for (int a = 0; a < 3 && n[BRUNT_NODE_MASS] > 0; a++) {
+                const int i = (a + 1) % 3, j = (a + 2) % 3;
+                const double v[2] = {(double)(n[BRUNT_NODE_VELOCITY + i] / n[BRUNT_NODE_MASS]),
+                                     (double)(n[BRUNT_NODE_VELOCITY + j] / n[BRUNT_NODE_MASS])};
+                turn[a] += reach * (v[0] * p[j] - v[1] * p[i]);
+            }
+        brunt_impulse_account_reaction(account[m], (const double[3]){0, 0, 0}, turn);
+    }
+}
+
 // ------------------------------------------------------------------------------------------ images
 
 // Adds the images of those there are by one symmetry plane; where it goes through one, nothing moves them along its

@@ -16,10 +16,18 @@ typedef struct brunt_symmetry_plane {
 enum { BRUNT_MAX_PLANES = 16 }; // of a world
 
 // Adds up the sums of every node and its images by the symmetry planes that act on a body, each with its account.
-// `taken`: the share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the symmetry
-// planes do to the old velocity never reaches them.
+// `taken`: the share of the grid's velocity that particles take over, 1 where they keep nothing of their own; the rest
+// of what the symmetry planes do to the old velocity never reaches them.
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
                          brunt_impulse_account *const *account);
+// What APIC's share keeps of the old velocity v moves on with it within the step, while what the planes have done to
+// its momentum is booked at the nodes: dt a sum v x p of the body's own momenta p before they were added up, which are
+// along v but near planes. Keeps those momenta: `own` has room for three numbers a node of the grid.
+void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
+                             double *own);
+// Books that afterwards, `reach` = dt a [s], with the account of the plane that is near.
+void brunt_symmetry_carry(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
+                          const double *own, double reach, brunt_impulse_account *const *account);
 // Images of a node coordinate under the symmetry planes it is near to (within the kernel), itself first, and the images
 // of these, as between two symmetry planes; `sign` of each velocity component, 0 across a symmetry plane that one of
 // them lies on. The same nodes whichever of them is given.

@@ -10,7 +10,7 @@ typedef struct brunt_settings {
     brunt_transfer transfer;
     brunt_scheme scheme;
     brunt_newton_def newton;     // of implicit steps
-    double flip, cell;           // [-], [m] of the grids
+    double flip, apic, cell;     // [-] shares that FLIP and APIC keep, [m] of the grids
     double cfl, fixed_step, end; // [-], [s] 0: the stable one, [s]
 } brunt_settings;
 

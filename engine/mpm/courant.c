@@ -21,6 +21,10 @@ double brunt_lone_points_cfl(int dimension, brunt_kernel kernel, brunt_transfer 
     return limit[dimension == 3][kernel - BRUNT_LINEAR][transfer];
 }
 
+double brunt_share_left(double share, double speed, double cell, double dt) {
+    return pow(share, 2 * speed * dt / cell);
+}
+
 double brunt_default_cfl(int dimension, brunt_kernel kernel, brunt_transfer transfer) {
     const double limit = brunt_lone_points_cfl(dimension, kernel, transfer);
     return limit > 0 ? fmin(0.5, limit) : 0.5;

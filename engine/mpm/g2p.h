@@ -9,6 +9,17 @@
 // where the forces took it (p2g.h), and then hoop stretch and radius grow by the same factor 1 + dt v_r / r, so that
 // the stretch is r / R for good. What gathers velocities is the same for rings and for plane strain.
 //
+// KEEPS: APIC that keeps a share a of what the grid does not see. With V and C_grid gathered from the new velocities,
+// and V_old and C_old likewise from those that the particles have given to the grid,
+//   v <- V + a (v - V_old),   C <- C_grid + a (C - C_old),   x <- x + dt V.
+// What is kept has no momentum and no angular momentum where it is made: the scatter of APIC, and its gather, keep
+// both. But the particle moves by V while its momentum is that of V + off, off = a (v - V_old), and so dt sum m V x off
+// of the angular momentum is lost. With sum_p m w (v + C d - v_old) = 0 at each node, taken times v_old, that is
+//   dt sum m ((V - V_old) x off - D (C_old off_C^T - off_C C_old^T)),   off_C = a (C - C_old),
+// D the kernel's second moment: no velocity of the body as a whole is in it (dt V x off itself tears a body that flies
+// as fast as its waves). Each particle gets its part as spin of C; with undeformed kernels, which see what F undoes,
+// of C F^T.
+//
 // TOTAL: the kernels live in the undeformed configuration. The gradient that is gathered is that of v over the
 // undeformed coordinates, Fdot; the material sees L = Fdot F^-1 of the F at the start, for which F = (I + dt L) F_old
 // is the same update.
@@ -25,16 +36,22 @@
 // What the tiles of a block have in common, and their sums.
 typedef struct g2p_pass {
     const brunt_grid *grid;
-    real *out[3 + 9 + 9]; // of the block: velocity, gradient, affine field or old velocity; from its first particle on
+    real *out[BRUNT_OUT_KEEPING];               // of the block, as of a workspace; from its first particle on
     real *x[3], *v[3], *F[9], *C[9], *moves[3]; // from slot 0 on
     const real *mass;
     real *hoop;
-    real dt, flip, turning;
+    real dt, kept, turning, lag;      // lag: dt / (2 D)
     lanes kinetic, fastest, shortest; // sum m |v|^2; greatest |v|^2; greatest 1 / (principal stretch)^2
 } g2p_pass;
 
-BRUNT_INLINE bool with_old(transfer_kind kind) { return kind.transfer == BRUNT_FLIP && kind.stage != AFTER_MUSL; }
+BRUNT_INLINE bool with_old(transfer_kind kind) {
+    return kind.keeps || (kind.transfer == BRUNT_FLIP && kind.stage != AFTER_MUSL);
+}
 BRUNT_INLINE bool with_affine(transfer_kind kind) { return kind.transfer == BRUNT_APIC && kind.stage != MUSL_VELOCITY; }
+BRUNT_INLINE int outputs_of(transfer_kind kind) {
+    const int dim = kind.dim, at = old_place(dim, with_affine(kind));
+    return at + (with_old(kind) ? dim : 0) + (kind.keeps ? dim * dim : 0);
+}
 
 static int32_t padded_count(const brunt_block *block) {
     return (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
@@ -44,7 +61,7 @@ static int32_t padded_count(const brunt_block *block) {
 BRUNT_INLINE void g2p_fields(brunt_body *body, int32_t b, brunt_workspace *work, fields_fn *fields_of,
                              transfer_kind kind) {
     const brunt_block *block = &body->grid.blocks[b];
-    const int dim = kind.dim, outputs = dim + dim * dim + (with_affine(kind) ? dim * dim : with_old(kind) ? dim : 0);
+    const int outputs = outputs_of(kind);
     fields_of(body, block, body->grid.bin_start + (size_t)b * BRUNT_BIN_STARTS, work);
     const int32_t count = block->count, padded = padded_count(block);
     for (int o = 0; o < outputs; o++)
@@ -54,9 +71,10 @@ BRUNT_INLINE void g2p_fields(brunt_body *body, int32_t b, brunt_workspace *work,
 // What the velocity component v, at s, becomes where the grid has grid_v.
 BRUNT_INLINE lanes new_velocity(const g2p_pass *pass, int64_t i, int r, lanes v, lanes grid_v, transfer_kind kind) {
     if (!with_old(kind)) return grid_v;
-    const int dim = kind.dim;
-    lanes change = grid_v - lanes_load(pass->out[dim + dim * dim + r] + i);
-    return pass->flip * (v + change) + (1 - pass->flip) * grid_v;
+    const lanes old = lanes_load(pass->out[old_place(kind.dim, with_affine(kind)) + r] + i);
+    if (kind.keeps) return grid_v + pass->kept * (v - old);
+    const lanes change = grid_v - old;
+    return pass->kept * (v + change) + (1 - pass->kept) * grid_v;
 }
 
 // Velocity and place of the particles at s, number i of their block; |v|^2. Rings: hoop rate and stretch as well.
@@ -118,12 +136,61 @@ BRUNT_INLINE void update_deformation(g2p_pass *pass, int64_t i, int64_t s, trans
         }
 }
 
+// dt / 2 times the angular momentum per D that what is kept would lose, r and c of it.
+BRUNT_INLINE lanes lost_spin(const g2p_pass *pass, int r, int c, const lanes *change, const lanes *off,
+                             const lanes *old, const lanes *off_C, int dim) {
+    lanes bends = (lanes){0};
+    for (int k = 0; k < dim; k++)
+        bends += old[r * dim + k] * off_C[c * dim + k] - old[c * dim + k] * off_C[r * dim + k];
+    return pass->lag * (change[r] * off[c] - change[c] * off[r]) - (real)0.5 * pass->dt * bends;
+}
+
+// Adds a spin to the affine field.
+BRUNT_INLINE void add_spin(const g2p_pass *pass, int64_t s, const lanes *spin, lanes *C, transfer_kind kind) {
+    const int dim = kind.dim;
+    if (kind.form != TOTAL) {
+        for (int c = 0; c < dim * dim; c++) C[c] += spin[c];
+        return;
+    }
+    lanes F[9], inverse[9];
+    for (int c = 0; c < dim * dim; c++) F[c] = lanes_load(pass->F[c] + s);
+    inverse_matrix(dim, F, inverse);
+    for (int r = 0; r < dim; r++)
+        for (int a = 0; a < dim; a++)
+            for (int k = 0; k < dim; k++) C[r * dim + a] += spin[r * dim + k] * inverse[a * dim + k];
+}
+
+// Adds to the affine field what is kept of it, and the angular momentum of what is kept.
+BRUNT_INLINE void keep_affine_field(const g2p_pass *pass, int64_t i, int64_t s, lanes *C, transfer_kind kind) {
+    const int dim = kind.dim, at = old_place(dim, true);
+    lanes change[3], off[3], old[9], off_C[9], spin[9];
+    for (int r = 0; r < dim; r++) {
+        const lanes V = lanes_load(pass->out[r] + i);
+        change[r] = V - lanes_load(pass->out[at + r] + i);
+        off[r] = lanes_load(pass->v[r] + s) - V;
+    }
+    for (int c = 0; c < dim * dim; c++) {
+        old[c] = lanes_load(pass->out[at + dim + c] + i);
+        off_C[c] = pass->kept * (lanes_load(pass->C[c] + s) - old[c]);
+        C[c] += off_C[c];
+    }
+    for (int r = 0; r < dim; r++) {
+        spin[r * dim + r] = (lanes){0};
+        for (int c = r + 1; c < dim; c++) {
+            spin[r * dim + c] = lost_spin(pass, r, c, change, off, old, off_C, dim);
+            spin[c * dim + r] = -spin[r * dim + c];
+        }
+    }
+    add_spin(pass, s, spin, C, kind);
+}
+
 // The affine field of the particles where they are now; sum C:C D, twice its kinetic energy per mass.
 BRUNT_INLINE lanes update_affine_field(const g2p_pass *pass, int64_t i, int64_t s, transfer_kind kind) {
     const int dim = kind.dim;
     lanes A[9], C[9], affine2 = (lanes){0};
     for (int c = 0; c < dim * dim; c++) A[c] = lanes_load(pass->out[dim + dim * dim + c] + i);
     turn_affine_field(dim, A, pass->turning, C);
+    if (kind.keeps) keep_affine_field(pass, i, s, C, kind);
     for (int a = 0; a < dim; a++) {
         lanes square = (lanes){0};
         for (int r = 0; r < dim; r++) {
@@ -141,17 +208,19 @@ BRUNT_INLINE void copy_arrays(real **to, real *const *from, int count) {
 }
 
 // The arrays are copied, as what is stored in them might, for all the compiler knows, be their own addresses.
-BRUNT_INLINE g2p_pass g2p_begin(brunt_body *body, real dt, real flip, brunt_workspace *work, transfer_kind kind) {
+BRUNT_INLINE g2p_pass g2p_begin(brunt_body *body, real dt, real kept, brunt_workspace *work, transfer_kind kind) {
     brunt_particles *p = &body->particles;
     const int dim = kind.dim, matrix = dim * dim;
     const bool still = kind.form == TOTAL || body->material.model[BRUNT_STRENGTH]->fluid;
-    g2p_pass pass = {.grid = &body->grid,
-                     .mass = brunt_field(p, BRUNT_FIELD_mass)[0],
-                     .hoop = work->out[BRUNT_OUT_HOOP],
-                     .dt = dt,
-                     .flip = flip,
-                     .turning = still ? 0 : (real)0.5 * dt};
-    copy_arrays(pass.out, work->out, dim + matrix + (with_affine(kind) ? matrix : with_old(kind) ? dim : 0));
+    g2p_pass pass; // not of all instances has it everything, and what is not there is not set to 0 for nothing
+    pass.grid = &body->grid;
+    pass.mass = brunt_field(p, BRUNT_FIELD_mass)[0];
+    pass.hoop = work->out[BRUNT_OUT_HOOP];
+    pass.dt = dt, pass.kept = kept, pass.turning = still ? 0 : (real)0.5 * dt;
+    pass.kinetic = pass.fastest = pass.shortest = (lanes){0};
+    copy_arrays(pass.out, work->out, outputs_of(kind));
+    if (kind.keeps)
+        pass.lag = (real)0.5 * dt / bspline_moment(kind.order, lanes_set(0), body->grid.h, body->grid.inv_h)[0];
     copy_arrays(pass.x, brunt_field(p, BRUNT_FIELD_position), dim);
     copy_arrays(pass.v, brunt_field(p, BRUNT_FIELD_velocity), dim);
     copy_arrays(pass.F, brunt_field(p, BRUNT_FIELD_deformation_gradient), kind.form == AXISYMMETRIC ? 9 : matrix);
@@ -197,14 +266,15 @@ BRUNT_INLINE void report_material(brunt_body *body, int32_t b, const g2p_pass *p
         brunt_stress_power(body, block, pass->dt, work->out + kind.dim, kind.form == AXISYMMETRIC ? pass->hoop : NULL);
 }
 
-BRUNT_INLINE void g2p(brunt_body *body, int32_t b, real dt, real flip, brunt_workspace *work, fields_fn *fields_of,
+BRUNT_INLINE void g2p(brunt_body *body, int32_t b, real dt, real kept, brunt_workspace *work, fields_fn *fields_of,
                       transfer_kind kind) {
     g2p_fields(body, b, work, fields_of, kind);
     const brunt_block *block = &body->grid.blocks[b];
     const int32_t padded = padded_count(block);
-    g2p_pass pass = g2p_begin(body, dt, flip, work, kind);
+    g2p_pass pass = g2p_begin(body, dt, kept, work, kind);
     const bool keeps = body->erodes_inverted || body->keeps;
-    int32_t kept = keeps ? brunt_keep_inverted(body, block, dt, work->out + kind.dim, work->out[BRUNT_OUT_STRETCH]) : 0;
+    int32_t turned =
+        keeps ? brunt_keep_inverted(body, block, dt, work->out + kind.dim, work->out[BRUNT_OUT_STRETCH]) : 0;
     for (int64_t i = 0; i < padded; i += BRUNT_LANES) {
         const int64_t s = block->first + i;
         const lanes speed2 = update_velocity(&pass, i, s, kind);
@@ -215,18 +285,18 @@ BRUNT_INLINE void g2p(brunt_body *body, int32_t b, real dt, real flip, brunt_wor
     }
     report_motion(body, b, &pass, work, kind);
     if (kind.form == AXISYMMETRIC && keeps)
-        kept += brunt_keep_inverted_hoops(body, block, dt, pass.hoop, work->out[BRUNT_OUT_STRETCH]);
+        turned += brunt_keep_inverted_hoops(body, block, dt, pass.hoop, work->out[BRUNT_OUT_STRETCH]);
     report_material(body, b, &pass, work, kind);
-    body->report[b].turned = kept;
+    body->report[b].turned = turned;
 }
 
 // The linear kernel's first stage: velocities, and what the stress did before they go to the grid once more.
-BRUNT_INLINE void musl_velocity(brunt_body *body, int32_t b, real flip, brunt_workspace *work, fields_fn *fields_of,
+BRUNT_INLINE void musl_velocity(brunt_body *body, int32_t b, real kept, brunt_workspace *work, fields_fn *fields_of,
                                 transfer_kind kind) {
     g2p_fields(body, b, work, fields_of, kind);
     const brunt_block *block = &body->grid.blocks[b];
     const int32_t padded = padded_count(block);
-    const g2p_pass pass = g2p_begin(body, 0, flip, work, kind);
+    const g2p_pass pass = g2p_begin(body, 0, kept, work, kind);
     for (int64_t i = 0; i < padded; i += BRUNT_LANES)
         for (int r = 0; r < kind.dim; r++) {
             const int64_t s = block->first + i;

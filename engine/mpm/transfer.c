@@ -18,14 +18,20 @@
                (fields_kind){.dim = dimension, .order = kernel, .old = with_old, .affine = with_affine});              \
     }
 #define G2P(name, fields_of, dimension, kernel, to, configuration, part)                                               \
-    static void name(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work) {                     \
-        g2p(body, block, dt, flip, work, fields_of,                                                                    \
+    static void name(brunt_body *body, int32_t block, real dt, real kept, brunt_workspace *work) {                     \
+        g2p(body, block, dt, kept, work, fields_of,                                                                    \
             (transfer_kind){.dim = dimension, .order = kernel, .transfer = to, .form = configuration, .stage = part}); \
     }
+#define KEEPING(name, fields_of, dimension, kernel, configuration)                                                     \
+    static void name(brunt_body *body, int32_t block, real dt, real kept, brunt_workspace *work) {                     \
+        g2p(body, block, dt, kept, work, fields_of,                                                                    \
+            (transfer_kind){                                                                                           \
+                .dim = dimension, .order = kernel, .transfer = BRUNT_APIC, .keeps = true, .form = configuration});     \
+    }
 #define MUSL(name, fields_of, dimension, to, configuration)                                                            \
-    static void name(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work) {                     \
+    static void name(brunt_body *body, int32_t block, real dt, real kept, brunt_workspace *work) {                     \
         (void)dt;                                                                                                      \
-        musl_velocity(body, block, flip, work, fields_of,                                                              \
+        musl_velocity(body, block, kept, work, fields_of,                                                              \
                       (transfer_kind){.dim = dimension,                                                                \
                                       .order = BRUNT_LINEAR,                                                           \
                                       .transfer = to,                                                                  \
@@ -61,25 +67,29 @@ P2G(p2g_3d_quadratic_apic_total, 3, BRUNT_QUADRATIC, BRUNT_APIC, TOTAL)
 P2G(p2g_3d_cubic_pic_total, 3, BRUNT_CUBIC, BRUNT_PIC, TOTAL)
 P2G(p2g_3d_cubic_apic_total, 3, BRUNT_CUBIC, BRUNT_APIC, TOTAL)
 
-// --- the grid's fields at particles: velocity and gradient; with the old velocity; with the affine field
+// --- the grid's fields at particles: velocity and gradient; with the old velocity; with the affine field; with both
 FIELDS(fields_2d_linear, 2, BRUNT_LINEAR, false, false)
 FIELDS(fields_2d_linear_old, 2, BRUNT_LINEAR, true, false)
 FIELDS(fields_2d_linear_affine, 2, BRUNT_LINEAR, false, true)
 FIELDS(fields_2d_quadratic, 2, BRUNT_QUADRATIC, false, false)
 FIELDS(fields_2d_quadratic_old, 2, BRUNT_QUADRATIC, true, false)
 FIELDS(fields_2d_quadratic_affine, 2, BRUNT_QUADRATIC, false, true)
+FIELDS(fields_2d_quadratic_both, 2, BRUNT_QUADRATIC, true, true)
 FIELDS(fields_2d_cubic, 2, BRUNT_CUBIC, false, false)
 FIELDS(fields_2d_cubic_old, 2, BRUNT_CUBIC, true, false)
 FIELDS(fields_2d_cubic_affine, 2, BRUNT_CUBIC, false, true)
+FIELDS(fields_2d_cubic_both, 2, BRUNT_CUBIC, true, true)
 FIELDS(fields_3d_linear, 3, BRUNT_LINEAR, false, false)
 FIELDS(fields_3d_linear_old, 3, BRUNT_LINEAR, true, false)
 FIELDS(fields_3d_linear_affine, 3, BRUNT_LINEAR, false, true)
 FIELDS(fields_3d_quadratic, 3, BRUNT_QUADRATIC, false, false)
 FIELDS(fields_3d_quadratic_old, 3, BRUNT_QUADRATIC, true, false)
 FIELDS(fields_3d_quadratic_affine, 3, BRUNT_QUADRATIC, false, true)
+FIELDS(fields_3d_quadratic_both, 3, BRUNT_QUADRATIC, true, true)
 FIELDS(fields_3d_cubic, 3, BRUNT_CUBIC, false, false)
 FIELDS(fields_3d_cubic_old, 3, BRUNT_CUBIC, true, false)
 FIELDS(fields_3d_cubic_affine, 3, BRUNT_CUBIC, false, true)
+FIELDS(fields_3d_cubic_both, 3, BRUNT_CUBIC, true, true)
 
 // --- grid to particles
 G2P(g2p_2d_linear_pic, fields_2d_linear, 2, BRUNT_LINEAR, BRUNT_PIC, UPDATED, AFTER_MUSL)
@@ -121,6 +131,18 @@ G2P(g2p_3d_quadratic_apic_total, fields_3d_quadratic_affine, 3, BRUNT_QUADRATIC,
 G2P(g2p_3d_cubic_pic_total, fields_3d_cubic, 3, BRUNT_CUBIC, BRUNT_PIC, TOTAL, WHOLE)
 G2P(g2p_3d_cubic_flip_total, fields_3d_cubic_old, 3, BRUNT_CUBIC, BRUNT_FLIP, TOTAL, WHOLE)
 G2P(g2p_3d_cubic_apic_total, fields_3d_cubic_affine, 3, BRUNT_CUBIC, BRUNT_APIC, TOTAL, WHOLE)
+
+// --- of APIC that keeps a share: no linear kernel, on which APIC makes energy
+KEEPING(g2p_2d_quadratic_keeping, fields_2d_quadratic_both, 2, BRUNT_QUADRATIC, UPDATED)
+KEEPING(g2p_2d_cubic_keeping, fields_2d_cubic_both, 2, BRUNT_CUBIC, UPDATED)
+KEEPING(g2p_3d_quadratic_keeping, fields_3d_quadratic_both, 3, BRUNT_QUADRATIC, UPDATED)
+KEEPING(g2p_3d_cubic_keeping, fields_3d_cubic_both, 3, BRUNT_CUBIC, UPDATED)
+KEEPING(g2p_axisymmetric_quadratic_keeping, fields_2d_quadratic_both, 2, BRUNT_QUADRATIC, AXISYMMETRIC)
+KEEPING(g2p_axisymmetric_cubic_keeping, fields_2d_cubic_both, 2, BRUNT_CUBIC, AXISYMMETRIC)
+KEEPING(g2p_2d_quadratic_keeping_total, fields_2d_quadratic_both, 2, BRUNT_QUADRATIC, TOTAL)
+KEEPING(g2p_2d_cubic_keeping_total, fields_2d_cubic_both, 2, BRUNT_CUBIC, TOTAL)
+KEEPING(g2p_3d_quadratic_keeping_total, fields_3d_quadratic_both, 3, BRUNT_QUADRATIC, TOTAL)
+KEEPING(g2p_3d_cubic_keeping_total, fields_3d_cubic_both, 3, BRUNT_CUBIC, TOTAL)
 
 // --- the linear kernel's first stage
 MUSL(musl_2d_linear_pic, fields_2d_linear, 2, BRUNT_PIC, UPDATED)
@@ -190,4 +212,14 @@ brunt_p2g_fn *brunt_find_total_p2g(int dim, brunt_kernel kernel, brunt_transfer 
 brunt_g2p_fn *brunt_find_total_g2p(int dim, brunt_kernel kernel, brunt_transfer transfer) {
     static brunt_g2p_fn *const table[2][3][3] = {G2P_TOTAL(2d), G2P_TOTAL(3d)};
     return table[dim - 2][kernel - 1][transfer];
+}
+
+brunt_g2p_fn *brunt_find_keeping_g2p(int dim, bool axisymmetric, brunt_kernel kernel, bool total) {
+    static brunt_g2p_fn *const table[3][3] = {
+        {NULL, g2p_2d_quadratic_keeping, g2p_2d_cubic_keeping},
+        {NULL, g2p_3d_quadratic_keeping, g2p_3d_cubic_keeping},
+        {NULL, g2p_axisymmetric_quadratic_keeping, g2p_axisymmetric_cubic_keeping}};
+    static brunt_g2p_fn *const undeformed[2][3] = {{NULL, g2p_2d_quadratic_keeping_total, g2p_2d_cubic_keeping_total},
+                                                   {NULL, g2p_3d_quadratic_keeping_total, g2p_3d_cubic_keeping_total}};
+    return total ? undeformed[dim - 2][kernel - 1] : table[table_row(dim, axisymmetric)][kernel - 1];
 }

@@ -7,8 +7,9 @@
 #include "mpm/mpm_body.h"
 
 // Per-thread room for one block, sized for the fullest block.
-// Of rings: places in `out` that plane strain leaves free.
+// Of rings: places in `out` that plane strain leaves free. How many arrays `out` has, and where APIC keeps a share.
 enum { BRUNT_OUT_STRETCH = 21, BRUNT_OUT_HOOP = 22, BRUNT_OUT_ZERO = 23 };
+enum { BRUNT_OUT_USUAL = 24, BRUNT_OUT_KEEPING = 3 + 9 + 9 + 3 + 9 };
 
 typedef struct brunt_workspace {
     real *memory;
@@ -16,7 +17,9 @@ typedef struct brunt_workspace {
     int64_t stride; // reals an array of particles takes
     real *window;   // nodes a block's bins touch
     real *planes;   // polynomial coefficients of the planes of bins in use
-    real *out[24];  // particle arrays: velocity, gradient, affine, old velocity; of rings the hoop rate, and zeros
+    // Particle arrays: velocity, gradient, affine field, old velocity and, where APIC keeps a share, its affine field;
+    // of rings the hoop rate, and zeros.
+    real *out[BRUNT_OUT_KEEPING];
     real *plastic, *viscous, *strain; // what material components leave for the next
 } brunt_workspace;
 
@@ -27,8 +30,9 @@ typedef void brunt_p2g_fn(brunt_body *body, int32_t block, real dt);
 brunt_p2g_fn brunt_p2g_triangles;
 
 // Velocity and its gradient from the grid to the particles of `block`, then their update: velocity, position,
-// deformation gradient, material. Fills body->report[block].
-typedef void brunt_g2p_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);
+// deformation gradient, material. Fills body->report[block]. `kept`: the share of FLIP, or what this step leaves of
+// APIC's (brunt_share_left).
+typedef void brunt_g2p_fn(brunt_body *body, int32_t block, real dt, real kept, brunt_workspace *work);
 
 // kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC; axisymmetric with dim 2
 brunt_p2g_fn *brunt_find_p2g(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
@@ -37,6 +41,9 @@ brunt_g2p_fn *brunt_find_g2p(int dim, bool axisymmetric, brunt_kernel kernel, br
 // between cells, and particles that never leave their corner of a cell do not average it.
 brunt_p2g_fn *brunt_find_total_p2g(int dim, brunt_kernel kernel, brunt_transfer transfer);
 brunt_g2p_fn *brunt_find_total_g2p(int dim, brunt_kernel kernel, brunt_transfer transfer);
+// G2p of APIC that keeps a share, `total` of total-Lagrangian bodies. NULL for the linear kernel, on which APIC makes
+// energy.
+brunt_g2p_fn *brunt_find_keeping_g2p(int dim, bool axisymmetric, brunt_kernel kernel, bool total);
 // Of the linear kernel g2p has two stages: this one updates the velocities, the one above the rest, after the
 // velocities have been to the grid once more. NULL for the other kernels.
 brunt_g2p_fn *brunt_find_musl_velocity(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
@@ -52,6 +59,7 @@ int32_t brunt_keep_inverted_hoops(brunt_body *body, const brunt_block *block, re
 // What is freed has no stress.
 void brunt_still_stress(brunt_body *body, const brunt_block *block);
 
-// Makes room for blocks of up to `most` particles. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most, brunt_error *error);
+// Makes room for blocks of up to `most` particles, with the first `outs` arrays of `out`. BRUNT_OK, or BRUNT_FAILED:
+// out of memory.
+int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most, int outs, brunt_error *error);
 void brunt_workspace_free(brunt_workspace *work);

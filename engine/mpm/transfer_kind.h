@@ -2,6 +2,8 @@
 // always inline, are then loops of fixed lengths without branches.
 #pragma once
 
+#include <stdbool.h>
+
 #include "brunt.h"
 
 // Where kernels and material live.
@@ -17,6 +19,7 @@ typedef enum transfer_stage { WHOLE, MUSL_VELOCITY, AFTER_MUSL } transfer_stage;
 typedef struct transfer_kind {
     int dim, order; // of space, 2 or 3; of the kernel: 1 linear, 2 quadratic, 3 cubic
     brunt_transfer transfer;
+    bool keeps; // of APIC: particles keep a share of what the grid does not see (g2p.h)
     transfer_form form;
     transfer_stage stage;
 } transfer_kind;

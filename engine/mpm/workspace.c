@@ -3,9 +3,9 @@
 #include "base/simd.h"
 #include "mpm/transfer.h"
 
-int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most, brunt_error *error) {
+int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most, int outs, brunt_error *error) {
     int64_t stride = (most + 2 * BRUNT_LANES + 7) / 8 * 8 + 72; // 9 cache lines apart, see brunt_particles_reserve
-    int n = grid->order + 1, arrays = (int)(sizeof work->out / sizeof work->out[0]) + 3;
+    int n = grid->order + 1, arrays = outs + 3;
     int64_t window = ((int64_t)grid->span_nodes + 1) * 8;
     int64_t planes = (int64_t)n * (grid->dim == 3 ? 16 * n * n : 8 * n) * 8;
     size_t reals = (size_t)(window + planes + arrays * stride + 64);
@@ -16,7 +16,7 @@ int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t m
     work->window = work->memory;
     work->planes = work->window + window;
     real *at = work->planes + planes;
-    for (size_t k = 0; k < sizeof work->out / sizeof work->out[0]; k++, at += stride) work->out[k] = at;
+    for (int k = 0; k < outs; k++, at += stride) work->out[k] = at;
     work->plastic = at;
     work->viscous = at + stride;
     work->strain = at + 2 * stride;

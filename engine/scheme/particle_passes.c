@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "contact/planes/grid_conditions.h"
 #include "contact/search/particle_plane.h"
+#include "mpm/courant.h"
 #include "mpm/sort.h"
 #include "scheme/scheme.h"
 
@@ -14,7 +15,7 @@ enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2 };
 typedef struct body_job {
     brunt_world *world;
     brunt_body *body;
-    double dt;
+    double dt, kept;
 } body_job;
 
 static void p2g_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -25,12 +26,19 @@ static void p2g_blocks(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t b = begin; b < end; b++) p2g(job->body, (int32_t)b, (real)job->dt);
 }
 
+// What the gather is told of shares: FLIP's is of a step, APIC's of a time.
+static double kept_of(const brunt_world *world, const brunt_body *body, double dt) {
+    const brunt_settings *s = &world->settings;
+    return s->apic > 0 ? brunt_share_left(s->apic, (double)body->material.wave_speed, (double)body->grid.h, dt)
+                       : s->flip;
+}
+
 static void g2p_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
     brunt_g2p_fn *g2p =
         brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_g2p : job->world->transfers.g2p;
     for (int64_t b = begin; b < end; b++)
-        g2p(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip, &job->world->scratch.points[worker]);
+        g2p(job->body, (int32_t)b, (real)job->dt, (real)job->kept, &job->world->scratch.points[worker]);
 }
 
 int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
@@ -48,7 +56,7 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
             BRUNT_CAPACITY(world->scratch.node_sums, (size_t)grid->slot_count, 0, "sums of blocks of nodes", error))
             return brunt_fail_inner(&world->clock, body, error);
         for (int t = 0; t < world->settings.threads; t++)
-            if (brunt_workspace_fit(&world->scratch.points[t], grid, most, error))
+            if (brunt_workspace_fit(&world->scratch.points[t], grid, most, world->transfers.outs, error))
                 return brunt_fail_inner(&world->clock, body, error);
     }
     return BRUNT_OK;
@@ -58,20 +66,44 @@ static bool acts_on(const brunt_boundary *boundary, const brunt_body *body) {
     return boundary->body < 0 || boundary->body == body->index;
 }
 
-// Sums of the grid's nodes and of their images by the symmetry planes that act on a body, recorded when `accounted`.
-// What the axis of rings does never is: its impulses cancel around the circle.
-static void fold_symmetry(brunt_boundaries *boundaries, brunt_body *body, double taken, bool accounted) {
-    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
-    brunt_impulse_account unbooked = {.external_work = 0}, *account[BRUNT_MAX_PLANES];
-    int count = 0;
+// The symmetry planes that act on a body, and where what they bear is recorded.
+typedef struct acting_symmetry {
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    brunt_impulse_account *account[BRUNT_MAX_PLANES], unbooked;
+    int count;
+} acting_symmetry;
+
+// What the axis of rings does is never recorded: its impulses cancel around the circle.
+static void find_symmetry(brunt_boundaries *boundaries, const brunt_body *body, bool accounted, acting_symmetry *s) {
+    s->unbooked = (brunt_impulse_account){.external_work = 0};
+    s->count = 0;
     for (int m = 0; m < boundaries->symmetry_count; m++) {
         const int w = boundaries->symmetry[m].boundary;
         brunt_boundary *boundary = w < 0 ? NULL : &boundaries->boundary[w];
         if (boundary && !acts_on(boundary, body)) continue;
-        account[count] = boundary && accounted ? &boundary->last : &unbooked;
-        symmetry[count++] = boundaries->symmetry[m];
+        s->account[s->count] = boundary && accounted ? &boundary->last : &s->unbooked;
+        s->plane[s->count++] = boundaries->symmetry[m];
     }
-    brunt_symmetry_fold(body, symmetry, count, taken, account);
+}
+
+// Sums of the grid's nodes and of their images by the symmetry planes that act on a body, recorded when `accounted`.
+static void fold_symmetry(brunt_boundaries *boundaries, brunt_body *body, double taken, bool accounted) {
+    acting_symmetry s;
+    find_symmetry(boundaries, body, accounted, &s);
+    brunt_symmetry_fold(body, s.plane, s.count, taken, s.account);
+}
+
+// The same where APIC keeps `kept`: the rest is taken, and what is kept moves on.
+static int fold_kept(brunt_world *world, brunt_body *body, double kept, double dt, brunt_error *error) {
+    acting_symmetry s;
+    find_symmetry(&world->boundaries, body, true, &s);
+    const size_t reals = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES * 3;
+    if (BRUNT_CAPACITY(world->scratch.own_momenta, reals, 0, "momenta of nodes", error))
+        return brunt_fail_inner(&world->clock, body, error);
+    brunt_symmetry_remember(body, s.plane, s.count, world->scratch.own_momenta);
+    brunt_symmetry_fold(body, s.plane, s.count, 1 - kept, s.account);
+    brunt_symmetry_carry(body, s.plane, s.count, world->scratch.own_momenta, kept * dt, s.account);
+    return BRUNT_OK;
 }
 
 static brunt_grid_job grid_job(brunt_world *world, const brunt_step *step, brunt_body *body) {
@@ -84,7 +116,7 @@ static brunt_grid_job grid_job(brunt_world *world, const brunt_step *step, brunt
 
 int brunt_pass_p2g(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    body_job job = {world, step->body, step->kick};
+    body_job job = {.world = world, .body = step->body, .dt = step->kick};
     brunt_parallel(world->settings.threads, step->body->grid.block_count, BLOCK_GRAIN, p2g_blocks, &job,
                    brunt_pass_timer(&world->timing));
     return BRUNT_OK;
@@ -99,9 +131,9 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
 }
 
 int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error) {
-    (void)error;
-    fold_symmetry(&world->boundaries, step->body, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
-                  true);
+    const brunt_settings *s = &world->settings; // what particles keep of their own knows nothing of the images
+    if (s->apic > 0) return fold_kept(world, step->body, kept_of(world, step->body, step->dt), step->dt, error);
+    fold_symmetry(&world->boundaries, step->body, s->transfer == BRUNT_FLIP ? 1 - s->flip : 1, true);
     return BRUNT_OK;
 }
 
@@ -212,7 +244,7 @@ static void musl_blocks(void *context, int64_t begin, int64_t end, int worker) {
 static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     static const double weightless[3] = {0, 0, 0};
     brunt_timer *timer = brunt_pass_timer(&world->timing);
-    body_job job = {world, body, dt}, still = {world, body, 0};
+    body_job job = {.world = world, .body = body, .dt = dt}, still = {.world = world, .body = body};
     brunt_grid_job nodes = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, musl_blocks, &job, timer);
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, p2g_blocks, &still, timer);
@@ -262,7 +294,7 @@ int brunt_pass_g2p(brunt_world *world, brunt_step *step, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
         const char *reason = NULL;
-        body_job job = {world, body, dt};
+        body_job job = {world, body, dt, kept_of(world, body, dt)};
         body->uneven = kick != dt;
         body->speed = 0;
         brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, g2p_blocks, &job,

@@ -73,6 +73,7 @@ static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
     X(equilibrium, world->settings.scheme == BRUNT_STATIC, "time.scheme: static")                                      \
     X(elements, world->bodies.fem_count > 0, "bodies: method fem or membrane")                                         \
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
+    X(kept_share, world->settings.apic > 0 && world->bodies.mpm_count > 0, "grid.transfer.apic")                       \
     X(contact, world->contact.rows != 0, "contact.method")                                                             \
     X(barrier, world->contact.has_barrier, "contact.method: barrier or penalty")                                       \
     X(tied, has_tied(&world->pairs), "contact.pairs: method tied")                                                     \

@@ -115,7 +115,7 @@ static double power_flops(const brunt_particles *p) {
 }
 
 // From nodes to particles: coefficients of a bin's polynomials, shared by its particles, and their evaluation.
-static double interpolation_flops(const brunt_body *body, bool old, bool affine, crowd per) {
+static double interpolation_flops(const brunt_body *body, bool old, bool affine, crowd per) { // both: of the old too
     static const int polynomial[] = {0, 1, 7, 15}, correction[] = {0, 0, 4, 5}, slope[] = {0, 0, 3, 6};
     _Static_assert(BRUNT_COUNT(polynomial) == BRUNT_CUBIC + 1 && BRUNT_COUNT(slope) == BRUNT_CUBIC + 1,
                    "a row for each kernel");
@@ -127,13 +127,14 @@ static double interpolation_flops(const brunt_body *body, bool old, bool affine,
     // Horner: along z for all powers of x and y, then y, then x; the same with one power less where it is the highest.
     double each = (d == 3 ? N * N * 2 * order : 0) + 2 * order * N + 2 * order * order + 2 * order + 2 * slope[order];
     if (d == 3) each += order * (2 * order * N + 2 * order) + slope[order];
-    each += d;                              // gradient: / h
-    if (affine && order > 1) each += 3 * d; // C: correction, / h
-    if (old) each += d == 3 ? N * (N * (2 * order + 2) + 2) : N * (2 * N + 2);
+    if (old && affine) each += each + 3 * d; // all of the old velocity, its C alone
+    each += d;                               // gradient: / h
+    if (affine && order > 1) each += 3 * d;  // C: correction, / h
+    if (old && !affine) each += d == 3 ? N * (N * (2 * order + 2) + 2) : N * (2 * N + 2);
     return shared + 3 * d + (affine ? correction[order] * d : 0) + d * each;
 }
 
-static double update_flops(const brunt_body *body, brunt_transfer transfer, transfer_pass pass) {
+static double update_flops(const brunt_body *body, brunt_transfer transfer, bool keeps, transfer_pass pass) {
     const brunt_particles *p = &body->particles;
     const int d = p->dim;
     const bool total = brunt_total_lagrangian(p), axisymmetric = brunt_axisymmetric(p);
@@ -146,6 +147,9 @@ static double update_flops(const brunt_body *body, brunt_transfer transfer, tran
     if (transfer == BRUNT_APIC)                                                             // C - dt sym(C C), |C|^2
         flops += d * (2.0 * d + 2) + (pairs_of(d) - d) * (4 * d + 2) + d * d * 3 + 2 * d +
                  (body->grid.order == 1 ? 7 * d : 0);
+    if (keeps) // V + a (v - V_old); its change, off; off_C, C; spin of each pair of axes, and where it goes
+        flops += 3 * d + 2 * d + 3 * d * d + (pairs_of(d) - d) * (4 * d + 6) +
+                 (total ? inverse_flops(d) + d * d * 2.0 * d : d * d);
     return flops + power_flops(p) * (pass == G2P_REST ? 2 : 1);
 }
 
@@ -165,10 +169,11 @@ static brunt_amount p2g_work(const brunt_settings *settings, const brunt_body *b
 // With nodes as velocities where `pass` takes them from the grid.
 static brunt_amount g2p_work(const brunt_settings *settings, const brunt_body *body, transfer_pass pass) {
     const crowd per = crowd_of(body);
-    const bool old = settings->transfer == BRUNT_FLIP && pass != G2P_REST;
+    const bool keeps = settings->apic > 0, old = keeps || (settings->transfer == BRUNT_FLIP && pass != G2P_REST);
     const bool affine = settings->transfer == BRUNT_APIC && pass != MUSL;
     brunt_amount work = {particle_bytes(&body->particles, pass) + per.slots * slot_bytes(),
-                         interpolation_flops(body, old, affine, per) + update_flops(body, settings->transfer, pass)};
+                         interpolation_flops(body, old, affine, per) +
+                             update_flops(body, settings->transfer, keeps, pass)};
     if (pass != MUSL) work.flops += model_flops(&body->material, body->particles.point_dim);
     return work;
 }

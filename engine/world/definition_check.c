@@ -268,6 +268,7 @@ static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt
     if (def->cells == BRUNT_MESH_CELLS) BRUNT_TRY(check_background(&def->background, error));
     if ((unsigned)def->transfer > BRUNT_APIC) REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
     if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
+    if (!(def->apic >= 0 && def->apic <= 0.98)) REFUSE("grid.transfer.apic: %g is not between 0 and 0.98", def->apic);
     if (!(def->cfl >= 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
     if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
     if (!(def->least_step >= 0) || !isfinite(def->least_step))

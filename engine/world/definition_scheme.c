@@ -8,6 +8,7 @@
 #include "contact/methods/method.h"
 #include "contact/planes/condition.h"
 #include "materials/material.h"
+#include "mpm/courant.h"
 #include "world/named_pairs.h"
 
 typedef struct refusals {
@@ -188,6 +189,20 @@ static void look_at_cells(const brunt_world_def *def, refusals *r) {
     }
 }
 
+// APIC that keeps a share. Implicit steps take many h / 2c, which leave nothing of it.
+static void look_at_share(const brunt_world_def *def, refusals *r) {
+    if (def->transfer != BRUNT_APIC || !(def->apic > 0)) return;
+    set_owner(r, "grid.transfer");
+    if (brunt_scheme_minimises(def->scheme))
+        say(r, ".apic", EXPLICIT_ONLY ": over longer ones nothing of a share is left; apic or {apic: 0} is wanted");
+    if (def->kernel == BRUNT_LINEAR)
+        say(r, ".apic", "with kernel linear apic makes energy: kernel quadratic or cubic is wanted for a share");
+    set_owner(r, "time");
+    if (def->scheme == BRUNT_EXPLICIT && def->cfl > BRUNT_SHARE_CFL)
+        say(r, ".cfl", "%g: with a share in grid.transfer.apic at most %g is wanted, beyond it energy is made",
+            def->cfl, BRUNT_SHARE_CFL);
+}
+
 static void look_at_implicit(const brunt_world_def *def, refusals *r) {
     look_at_solver(def, r);
     look_at_time(def, r);
@@ -287,6 +302,7 @@ void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse,
     if (def->scheme == BRUNT_STATIC) look_at_static(def, &r);
     if (minimises) look_at_implicit(def, &r);
     look_at_cells(def, &r);
+    look_at_share(def, &r);
     look_at_boundaries(def, &r);
     look_at_methods(def, &r);
     if (minimises) look_at_contact(def, &r);

@@ -20,6 +20,7 @@ void brunt_scratch_free(brunt_scratch *scratch, int threads) {
     brunt_point_touches_free(scratch->point_touches);
     brunt_particle_dofs_free(&scratch->planes);
     brunt_free(scratch->node_sums);
+    brunt_free(scratch->own_momenta);
 }
 
 void brunt_scratch_validate(const brunt_scratch *scratch, int threads) {
@@ -30,6 +31,7 @@ void brunt_scratch_validate(const brunt_scratch *scratch, int threads) {
         BRUNT_ASSERT(!scratch->meshes[t].memory == !scratch->meshes[t].capacity);
     }
     BRUNT_ASSERT(!scratch->node_sums == !scratch->node_sums_capacity);
+    BRUNT_ASSERT(!scratch->own_momenta == !scratch->own_momenta_capacity);
     BRUNT_ASSERT(planes->dof_count >= 0 && (size_t)planes->dof_count <= planes->dof_capacity / sizeof *planes->dof);
     BRUNT_ASSERT(planes->symmetry_count >= 0 && planes->symmetry_count <= BRUNT_MAX_PLANES);
 }

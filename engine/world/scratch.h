@@ -18,6 +18,8 @@ typedef struct brunt_scratch {
     brunt_point_touches *point_touches;
     brunt_node_sums *node_sums; // of the slots of one grid
     size_t node_sums_capacity;
+    double *own_momenta; // of the nodes of one grid, three each: where points keep a share beside symmetry planes
+    size_t own_momenta_capacity;
 } brunt_scratch;
 
 // Room for as many threads; all else is made where it is first wanted. No state: nothing in it lasts. BRUNT_OK, or

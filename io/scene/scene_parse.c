@@ -170,10 +170,13 @@ static void fill_grid(scene_reader *reader) {
         brunt_add_default(reader, transfer, "flip", "0.99");
     }
     if (transfer->kind == SCENE_MAP) {
-        if (!brunt_tree_child(transfer, "flip"))
-            brunt_tree_complain(reader->tree, transfer, "{flip: SHARE} is wanted, or one of the words pic, flip, apic");
-        world->transfer = BRUNT_FLIP;
+        const bool flip = brunt_tree_child(transfer, "flip") != NULL, apic = brunt_tree_child(transfer, "apic") != NULL;
+        if (flip == apic)
+            brunt_tree_complain(reader->tree, transfer,
+                                "{flip: SHARE} or {apic: SHARE} is wanted, or one of the words pic, flip, apic");
+        world->transfer = apic ? BRUNT_APIC : BRUNT_FLIP;
         world->flip = brunt_real_of(transfer, "flip", world->flip);
+        world->apic = brunt_real_of(transfer, "apic", world->apic);
     } else {
         world->transfer = (brunt_transfer)(int)brunt_real_of(grid, "transfer", BRUNT_APIC);
     }

@@ -35,13 +35,14 @@ static brunt_world_def fall(bool quarter, brunt_transfer transfer, double fricti
 
 static const struct {
     brunt_transfer transfer;
-    double friction;
-} cases[] = {{BRUNT_APIC, 0}, {BRUNT_APIC, 0.3}, {BRUNT_PIC, 0.3}};
+    double friction, apic;
+} cases[] = {{BRUNT_APIC, 0, 0}, {BRUNT_APIC, 0.3, 0}, {BRUNT_PIC, 0.3, 0}, {BRUNT_APIC, 0.3, 0.9}};
 enum { CASES = sizeof cases / sizeof cases[0] };
 
 START_TEST(quarter_is_a_quarter) {
     brunt_world_def one = fall(true, cases[_i].transfer, cases[_i].friction),
                     all = fall(false, cases[_i].transfer, cases[_i].friction);
+    one.apic = all.apic = cases[_i].apic;
     brunt_world *quarter = world_take(&one), *whole = world_take(&all);
     double loudest = 0;
     for (int k = 0; k < 12; k++) {

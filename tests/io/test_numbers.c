@@ -128,7 +128,7 @@ static const char tool_text[] =
     "brunt: 1\n"
     "dimension: 2\n"
     "time: {end: 1 ms}\n"
-    "grid: {cell: 0.1}\n"
+    "grid: {cell: 0.1, transfer: {apic: 0.5}}\n"
     "materials: {gum: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.4}}\n"
     "bodies:\n"
     "  block: {method: mpm, material: gum, shape: {box: {min: [0, 0], max: [1, 1]}}}\n"

@@ -595,6 +595,39 @@ START_TEST(overrides) {
 }
 END_TEST
 
+// {apic: 0} is apic to the bit, and a share is not.
+START_TEST(shares_of_transfers) {
+    static const char thrown[] =
+        "brunt: 1\ndimension: 2\ntime: {end: 1 s}\ngrid: {cell: 0.1 m}\n"
+        "materials:\n  rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}\n"
+        "bodies:\n  block: {method: mpm, material: rubber, shape: {box: {min: [0, 0], max: [1 m, 0.5 m]}},\n"
+        "    velocity: [0, 1 m/s], wave: {velocity: [1 m/s, 0], wave_vector: [5 1/m, 3 1/m]}}\n";
+    static const char *const transfers[] = {"grid.transfer=apic", "grid.transfer={apic: 0}",
+                                            "grid.transfer={apic: 0.9}"};
+    static const double share[] = {0, 0, 0.9};
+    uint64_t hash[3];
+    for (int k = 0; k < 3; k++) {
+        brunt_scene s;
+        ck_assert_msg(parse(thrown, &transfers[k], 1, &s) == BRUNT_OK, "%s", messages);
+        ck_assert_int_eq(s.world.transfer, BRUNT_APIC);
+        NEAR(s.world.apic, share[k]);
+        brunt_error error = {0};
+        brunt_world *world = brunt_world_create(&s.world, &error);
+        ck_assert_msg(world != NULL, "%s", error.message);
+        ck_assert(brunt_effect_on(world, "kept_share") == (k == 2));
+        for (int n = 0; n < 5; n++) ck_assert_msg(!brunt_world_step(world, INFINITY, &error), "%s", error.message);
+        hash[k] = brunt_world_hash(world);
+        brunt_world_destroy(world);
+        char *text = write_text(&s);
+        ck_assert(strstr(text, k ? "    apic: 0" : "  transfer: apic\n") && !strstr(text, "flip"));
+        free(text);
+        brunt_scene_free(&s);
+    }
+    ck_assert_uint_eq(hash[0], hash[1]);
+    ck_assert_uint_ne(hash[0], hash[2]);
+}
+END_TEST
+
 static char *read_file(const char *path) {
     FILE *file = fopen(path, "rb");
     if (!file) return NULL;
@@ -815,6 +848,7 @@ int main(void) {
     tcase_add_test(tcase, output_and_measures);
     tcase_add_test(tcase, units);
     tcase_add_test(tcase, overrides);
+    tcase_add_test(tcase, shares_of_transfers);
     tcase_add_test(tcase, order);
     tcase_add_test(tcase, fixpoint);
     tcase_add_test(tcase, reference);

@@ -48,6 +48,8 @@ int main(int count, char **words) {
         bodies[0].size = 0.08;
     } else if (!strcmp(dress, "flip") || !strcmp(dress, "pic")) {
         def.transfer = dress[0] == 'f' ? BRUNT_FLIP : BRUNT_PIC;
+    } else if (!strcmp(dress, "apic_kept") || !strcmp(dress, "apic_0")) { // APIC that keeps a share, and none
+        def.apic = dress[5] == 'k' ? 0.9 : 0;
     } else if (!strcmp(dress, "cubic")) {
         def.kernel = BRUNT_CUBIC;
     } else if (!strcmp(dress, "dim2")) { // 1600 particles

@@ -166,6 +166,10 @@ START_TEST(enumerators) {
     REFUSED(def.kernel = (brunt_kernel)4, "grid.kernel");
     REFUSED(def.kernel = (brunt_kernel)0, "grid.kernel");
     REFUSED(def.transfer = (brunt_transfer)3, "grid.transfer");
+    REFUSED(def.apic = -0.01, "grid.transfer.apic: -0.01 is not between 0 and 0.98");
+    REFUSED(def.apic = 0.981, "grid.transfer.apic: 0.981 is not between 0 and 0.98");
+    REFUSED((def.apic = 0.5, def.kernel = BRUNT_LINEAR), "grid.transfer.apic: with kernel linear");
+    REFUSED((def.apic = 0.5, def.cfl = 0.91), "time.cfl: 0.91");
     REFUSED(def.contact.method = (brunt_contact_method)6, "contact.method: there is no choice 6");
     REFUSED(def.scheme = (brunt_scheme)3, "time.scheme: there is no choice 3");
     REFUSED(def.contact.method = (brunt_contact_method)-1, "contact.method: there is no choice -1");
@@ -228,6 +232,7 @@ START_TEST(numbers) {
         REFUSED(def.cell = v, "grid.cell");
         REFUSED(def.origin[2] = v, "grid.origin");
         REFUSED(def.flip = v, "grid.transfer.flip");
+        REFUSED(def.apic = v, "grid.transfer.apic");
         REFUSED(def.cfl = v, "time.cfl");
         REFUSED(def.step = v, "time.step");
         REFUSED(def.least_step = v, "time.least_step");

@@ -56,6 +56,9 @@ static void make_membrane(scene *s) {
 
 static void none(scene *s) { (void)s; }
 static void apic(scene *s) { s->def.transfer = BRUNT_APIC; }
+static void keeping(scene *s) { apic(s), s->def.apic = 0.9; }
+static void apic_of_0(scene *s) { apic(s), s->def.apic = 0; }
+static void share_of_pic(scene *s) { s->def.apic = 0.9; }
 static void flip_of_0(scene *s) { s->def.transfer = BRUNT_FLIP, s->def.flip = 0; }
 static void gravity(scene *s) { s->def.gravity[1] = -1; }
 static void no_gravity(scene *s) { s->def.gravity_ramp = 1; }
@@ -149,6 +152,9 @@ static const asked list[] = {
     {"gravity", make_points, gravity, "gravity "},
     {"gravity of 0", make_points, no_gravity, ""},
     {"share of FLIP of 0", make_points, flip_of_0, ""},
+    {"share of APIC", make_points, keeping, "affine kept_share "},
+    {"share of APIC of 0", make_points, apic_of_0, "affine "},
+    {"share of APIC, with PIC", make_points, share_of_pic, ""},
     {"total Lagrangian", make_points, total, "total_lagrangian "},
     {"contact of points", make_points, on_grid, "contact "},
     {"friction", make_points, rub, "contact friction "},

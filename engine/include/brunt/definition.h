@@ -60,7 +60,9 @@ typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC =
 // PIC: Harlow 1964, "The particle-in-cell computing method for fluid dynamics". FLIP: Brackbill and Ruppel 1986, "FLIP:
 // a method for adaptively zoned, particle-in-cell calculations of fluid flows in two dimensions"; points keep the share
 // `flip` of their own velocity, and PIC's has the rest (Zhu and Bridson 2005, "Animating sand as a fluid"). APIC:
-// Jiang, Schroeder, Selle, Teran and Stomakhin 2015, "The affine particle-in-cell method"; it has no share of FLIP.
+// Jiang, Schroeder, Selle, Teran and Stomakhin 2015, "The affine particle-in-cell method"; of
+// what the grid does not see of their velocity and affine field, points keep a share, of which `apic` is left after the
+// time cell / 2c, c the wave speed of the undeformed material. (Above 0: explicit steps, not linear, cfl <= 0.9.)
 typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
 
 // Tied: bodies of material points share one velocity field at the grid nodes that both reach, in both directions: they
@@ -148,6 +150,7 @@ typedef struct brunt_world_def {
     brunt_mesh background;   // of BRUNT_TRI3, for BRUNT_MESH_CELLS; owned
     brunt_transfer transfer; // default APIC
     double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
+    double apic;             // [-] for APIC: share kept over a time cell / 2c, 0..0.98; default 0
     double cfl;     // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
     double step;    // [s] fixed time step, 0 = from cfl; implicit steps: > 0; static: not used
     int load_steps; // static: >= 1, in which loads and prescribed motion grow
