@@ -171,7 +171,7 @@ START_TEST(momenta) {
         drift[k] = m.angular_drift;
         brunt_world_destroy(world);
     }
-    ck_assert_double_lt(drift[0], 2e-3);
+    ck_assert_double_lt(drift[0], _i ? 4.6e-4 : 2e-3); // without the spin of what is kept 5.6e-4
     ck_assert_double_lt(drift[1], 0.5 * drift[0]);
 }
 END_TEST
