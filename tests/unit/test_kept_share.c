@@ -135,6 +135,49 @@ START_TEST(kept_is_in_proportion) {
 }
 END_TEST
 
+// Rings between two mirrors across their axis, likewise; and momentum along the axis is exact.
+START_TEST(rings_keep_a_share) {
+    brunt_world_def def = begin(2 * _i, 0.9);
+    def.axisymmetric = true;
+    brunt_body_def *body = def_box(&def, "a", XYZ(0.3, 0, 0), XYZ(0.5, 0.4, 0));
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SYMMETRY, 0);
+    def_plane(&def, XYZ(0, 0.4, 0), XYZ(0, -1, 0), BRUNT_SYMMETRY, 0);
+    brunt_world *first = world_from(&def);
+    const int64_t n = brunt_body_particles(first, 0);
+    real *x = state_values(first, "position"), *v = calloc((size_t)(2 * n), sizeof *v),
+         *C = calloc((size_t)(4 * n), sizeof *C);
+    for (int64_t i = 0; i < n; i++) {
+        v[n + i] = (real)((int)floor((double)x[n + i] / (H / 2)) % 2 ? -1e-3 : 1e-3);
+        C[3 * n + i] = (real)0.02;
+    }
+    brunt_world *w = moving(&def, v, C);
+    world_steps(w, 9);
+    const double left = pow(0.9, 2 * wave_speed() * brunt_world_time(w) / H);
+    real *now = state_values(w, "velocity"), *then = state_values(w, "affine");
+    for (int64_t i = 0; i < n; i++) {
+        ck_assert_double_eq_tol((double)(now[n + i] / v[n + i]), left, 100 * ROUNDING);
+        ck_assert_double_eq_tol((double)(then[3 * n + i] / C[3 * n + i]), left, 100 * ROUNDING);
+    }
+    free(x), free(v), free(C), free(now), free(then);
+    brunt_world_destroy(first);
+    brunt_world_destroy(w);
+    def.plane_count = 0;
+    def_velocity(body, 0, 1, 0);
+    body->wave_velocity[0] = 0.5, body->wave_velocity[1] = 0.4, body->wave_vector[0] = 9, body->wave_vector[1] = 12;
+    w = world_take(&def);
+    const double start = world_energy(w).kinetic;
+    world_steps(w, 200);
+    const brunt_energy e = world_energy(w);
+    printf("  rings: linear %.1e, kinetic %.3f, internal %.3f, energy error %.1e\n", world_momentum(w).linear_drift,
+           e.kinetic / start, e.internal / start, e.error_relative);
+    ck_assert_double_le(world_momentum(w).linear_drift, ROUNDING);
+    ck_assert_double_gt(e.internal, 1e-3 * start);
+    ck_assert_double_lt(e.kinetic + e.internal, start);
+    ck_assert_double_le(fabs(e.error_relative), 1e-2);
+    brunt_world_destroy(w);
+}
+END_TEST
+
 // ---------------------------------------------------------------------------------------------------- what is exact
 
 // Any velocities and affine fields, in free flight.
@@ -328,6 +371,7 @@ int main(void) {
     Suite *suite = suite_create("kept share");
     ADD_LOOP(what_is_left_goes_by_time, 12);
     ADD_LOOP(kept_is_in_proportion, 8);
+    ADD_LOOP(rings_keep_a_share, 2);
     ADD_LOOP(momenta_of_any_motion, 4);
     ADD_LOOP(twenty_turns, 1);
     ADD_LOOP(flying_is_rest, 4);
