@@ -8,8 +8,8 @@
 // energy at every step.
 double brunt_lone_points_cfl(int dimension, brunt_kernel kernel, brunt_transfer transfer);
 
-// APIC with a share keeps a spinning cube together for 20 s up to 0.95 of the stable step, and not at 1
-// (bench/studies).
+// Of the stable step, where APIC keeps a share: a cube that spins (spinning_cube, share 0.98) holds twenty turns at
+// 0.95 and bursts within 26 steps at 1.
 #define BRUNT_SHARE_CFL 0.9
 // What a step `dt` [s] leaves of a share that is what h / 2c leaves: share^(2 c dt / h), c of the undeformed material
 // `speed` [m/s], which is the same at all times, h the cell. The product over steps goes by their time alone.
