@@ -80,13 +80,13 @@ enum { BINOMIAL_TERMS = 4, LOGARITHM_TERMS = 3 };
 enum { BINOMIAL_TERMS = 8, LOGARITHM_TERMS = 7 };
 #endif
 
-// (1 + r)^y = 1 + c1 r (1 + c2 r (1 + ...)), c_k = (y - k + 1) / k; to rounding for |r| <= reach.
+// (1 + r)^y = 1 + c1 r (1 + c2 r (1 + ...)), c_k = (y - k + 1) / k; to rounding for |r| <= radius.
 typedef struct binomial {
-    real exponent, reach, c[BINOMIAL_TERMS];
+    real exponent, radius, c[BINOMIAL_TERMS];
 } binomial;
 
 static binomial binomial_of(real exponent) {
-    binomial b = {.exponent = exponent, .reach = (real)(1.0 / 64) / (exponent > 1 ? exponent : 1)};
+    binomial b = {.exponent = exponent, .radius = (real)(1.0 / 64) / (exponent > 1 ? exponent : 1)};
     for (int k = 0; k < BINOMIAL_TERMS; k++) b.c[k] = (exponent - (real)k) / (real)(k + 1);
     return b;
 }
@@ -104,7 +104,7 @@ typedef struct slope_value {
 // x^y for x >= 0; `change`: x less what is known. Right where `wanted`.
 BRUNT_INLINE slope_value power_beside(const binomial *b, known at, lanes x, lanes change, lane_mask wanted) {
     const lanes r = change * at.inverse;
-    const lane_mask beside = lanes_abs(r) <= b->reach;
+    const lane_mask beside = lanes_abs(r) <= b->radius;
     lanes series = lanes_set(1);
     for (int k = BINOMIAL_TERMS - 1; k >= 0; k--) series = 1 + b->c[k] * r * series;
     lanes value = at.value * series, inverse = at.inverse * (1 - r * (1 - r));

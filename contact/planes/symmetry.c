@@ -144,13 +144,13 @@ void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry,
 
 // ------------------------------------------------------------------------------------------ what moves on
 
-// The first of the planes that a slot has nodes near to; -1: none.
+// The first of the planes that a slot has nodes near to, or BRUNT_NONE.
 static int plane_near(const brunt_grid *grid, const brunt_slot *slot, const brunt_symmetry_plane *symmetry, int count) {
     for (int m = 0; m < count; m++) {
         const int first = slot->coord[symmetry[m].axis] * grid->side;
         if (first <= symmetry[m].node + LAYERS && first + grid->side > symmetry[m].node - LAYERS) return m;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,

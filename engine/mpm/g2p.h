@@ -136,13 +136,17 @@ BRUNT_INLINE void update_deformation(g2p_pass *pass, int64_t i, int64_t s, trans
         }
 }
 
+// What a point keeps: changes of the velocity about it, what of it is kept, the affine field before, what of that is.
+typedef struct kept_motion {
+    lanes change[3], off[3], old[9], off_C[9];
+} kept_motion;
+
 // dt / 2 times the angular momentum per D that what is kept would lose, r and c of it.
-BRUNT_INLINE lanes lost_spin(const g2p_pass *pass, int r, int c, const lanes *change, const lanes *off,
-                             const lanes *old, const lanes *off_C, int dim) {
+BRUNT_INLINE lanes lost_spin(const g2p_pass *pass, const kept_motion *m, int r, int c, int dim) {
     lanes bends = (lanes){0};
     for (int k = 0; k < dim; k++)
-        bends += old[r * dim + k] * off_C[c * dim + k] - old[c * dim + k] * off_C[r * dim + k];
-    return pass->lag * (change[r] * off[c] - change[c] * off[r]) - (real)0.5 * pass->dt * bends;
+        bends += m->old[r * dim + k] * m->off_C[c * dim + k] - m->old[c * dim + k] * m->off_C[r * dim + k];
+    return pass->lag * (m->change[r] * m->off[c] - m->change[c] * m->off[r]) - (real)0.5 * pass->dt * bends;
 }
 
 // Adds a spin to the affine field.
@@ -163,21 +167,22 @@ BRUNT_INLINE void add_spin(const g2p_pass *pass, int64_t s, const lanes *spin, l
 // Adds to the affine field what is kept of it, and the angular momentum of what is kept.
 BRUNT_INLINE void keep_affine_field(const g2p_pass *pass, int64_t i, int64_t s, lanes *C, transfer_kind kind) {
     const int dim = kind.dim, at = old_place(dim, true);
-    lanes change[3], off[3], old[9], off_C[9], spin[9];
+    kept_motion m;
+    lanes spin[9];
     for (int r = 0; r < dim; r++) {
         const lanes V = lanes_load(pass->out[r] + i);
-        change[r] = V - lanes_load(pass->out[at + r] + i);
-        off[r] = lanes_load(pass->v[r] + s) - V;
+        m.change[r] = V - lanes_load(pass->out[at + r] + i);
+        m.off[r] = lanes_load(pass->v[r] + s) - V;
     }
     for (int c = 0; c < dim * dim; c++) {
-        old[c] = lanes_load(pass->out[at + dim + c] + i);
-        off_C[c] = pass->kept * (lanes_load(pass->C[c] + s) - old[c]);
-        C[c] += off_C[c];
+        m.old[c] = lanes_load(pass->out[at + dim + c] + i);
+        m.off_C[c] = pass->kept * (lanes_load(pass->C[c] + s) - m.old[c]);
+        C[c] += m.off_C[c];
     }
     for (int r = 0; r < dim; r++) {
         spin[r * dim + r] = (lanes){0};
         for (int c = r + 1; c < dim; c++) {
-            spin[r * dim + c] = lost_spin(pass, r, c, change, off, old, off_C, dim);
+            spin[r * dim + c] = lost_spin(pass, &m, r, c, dim);
             spin[c * dim + r] = -spin[r * dim + c];
         }
     }

@@ -102,14 +102,16 @@ BRUNT_INLINE lanes evaluate_old(const real *cf, const lanes xi[3], int r, fields
 // Where in `out` the old velocity is, and behind it its affine field.
 BRUNT_INLINE int old_place(int dim, bool affine) { return dim + dim * dim + (affine ? dim * dim : 0); }
 
-// Component r of the old velocity and of its affine field.
-BRUNT_INLINE void evaluate_old_affine(const real *cf, const lanes xi[3], const lanes correction[3], int r, real inv_h,
+// The old velocity and its affine field.
+BRUNT_INLINE void evaluate_old_affine(const real *cf, const lanes xi[3], const lanes correction[3], real inv_h,
                                       real *const *out, int64_t s, fields_kind kind) {
     const int dim = kind.dim, at = old_place(dim, true);
-    lanes slope[3], highest[3];
-    lanes_store(out[at + r] + s, evaluate_component(cf, xi, 3 + r, slope, highest, kind));
-    for (int a = 0; a < dim; a++)
-        lanes_store(out[at + dim + r * dim + a] + s, (slope[a] + correction[a] * highest[a]) * inv_h);
+    for (int r = 0; r < dim; r++) {
+        lanes slope[3], highest[3];
+        lanes_store(out[at + r] + s, evaluate_component(cf, xi, 3 + r, slope, highest, kind));
+        for (int a = 0; a < dim; a++)
+            lanes_store(out[at + dim + r * dim + a] + s, (slope[a] + correction[a] * highest[a]) * inv_h);
+    }
 }
 
 // A tile of particles at local coordinates xi, in the bin with coefficients cf (power of x slowest), to `s` of `out`.
@@ -127,11 +129,9 @@ BRUNT_INLINE void evaluate_tile(const real *cf, const lanes xi[3], real inv_h, r
                 lanes_store(out[dim + dim * dim + r * dim + a] + s,
                             (kind.order == 1 ? slope[a] : slope[a] + correction[a] * highest[a]) * inv_h);
         }
-        if (kind.old && kind.affine)
-            evaluate_old_affine(cf, xi, correction, r, inv_h, out, s, kind);
-        else if (kind.old)
-            lanes_store(out[old_place(dim, false) + r] + s, evaluate_old(cf, xi, r, kind));
+        if (kind.old && !kind.affine) lanes_store(out[old_place(dim, false) + r] + s, evaluate_old(cf, xi, r, kind));
     }
+    if (kind.old && kind.affine) evaluate_old_affine(cf, xi, correction, inv_h, out, s, kind);
 }
 
 // Coefficients p, `step` nodes apart, of order + 1 nodal values along an axis, in powers of the local coordinate.

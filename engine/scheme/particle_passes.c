@@ -27,8 +27,7 @@ static void p2g_blocks(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 // What the gather is told of shares: FLIP's is of a step, APIC's of a time.
-static double kept_of(const brunt_world *world, const brunt_body *body, double dt) {
-    const brunt_settings *s = &world->settings;
+static double kept_of(const brunt_settings *s, const brunt_body *body, double dt) {
     return s->apic > 0 ? brunt_share_left(s->apic, (double)body->material.wave_speed, (double)body->grid.h, dt)
                        : s->flip;
 }
@@ -132,7 +131,7 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
 
 int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_settings *s = &world->settings; // what particles keep of their own knows nothing of the images
-    if (s->apic > 0) return fold_kept(world, step->body, kept_of(world, step->body, step->dt), step->dt, error);
+    if (s->apic > 0) return fold_kept(world, step->body, kept_of(&world->settings, step->body, step->dt), step->dt, error);
     fold_symmetry(&world->boundaries, step->body, s->transfer == BRUNT_FLIP ? 1 - s->flip : 1, true);
     return BRUNT_OK;
 }
@@ -294,7 +293,7 @@ int brunt_pass_g2p(brunt_world *world, brunt_step *step, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
         const char *reason = NULL;
-        body_job job = {world, body, dt, kept_of(world, body, dt)};
+        body_job job = {world, body, dt, kept_of(&world->settings, body, dt)};
         body->uneven = kick != dt;
         body->speed = 0;
         brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, g2p_blocks, &job,
