@@ -23,7 +23,8 @@
 #include "contact/constraint/coulomb.h"
 #include "contact/methods/method.h"
 #include "contact/distance/gjk.h"
-#include "contact/planes/symmetry.h"
+#include "contact/planes/boundary.h"
+#include "contact/planes/followed.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -81,8 +82,9 @@ typedef struct job {
     const brunt_contact_context *m;
     brunt_body *bodies; // of material points
     brunt_contact_workspace *w;
-    const brunt_symmetry_plane *axis; // of rings; NULL
-    brunt_node_law *law[METHODS];     // of each method
+    bool follows; // some planes have images that follow: the axis of rings, and such that stick
+    int bearers;  // accounts of a group besides those of pairs: of the symmetry planes, 0 where none sticks
+    brunt_node_law *law[METHODS]; // of each method
 } job;
 
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
@@ -195,7 +197,7 @@ static int find_groups(job *j, brunt_error *error) {
         int32_t count = next - i;
         if (count < 2) continue;
         w->groups[w->group_count++] = (group){i, count, w->account_count};
-        w->account_count += count * (count - 1) / 2;
+        w->account_count += count * (count - 1) / 2 + j->bearers;
     }
     const size_t accounts = (size_t)(w->account_count + 1);
     if (BRUNT_CAPACITY(w->accounts, accounts, 0, "accounts of blocks that bodies share", error)) return BRUNT_FAILED;
@@ -220,7 +222,7 @@ typedef struct member {
     int32_t slot;
     real *node;
     int entry;
-    bool fixed;
+    bool fixed, rests;                   // rests: on a plane that it sticks to, which takes what it is given
     double v[3], inverse[3], applied[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
 } member;
 
@@ -232,6 +234,7 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     brunt_node_local(grid, node, local);
     for (int m = 0; m < j->m->symmetry_count; m++) {
         int axis = j->m->symmetry[m].axis;
+        if (j->m->symmetry[m].sticks) continue; // the nodes behind it follow, and what is on it rests
         int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->m->symmetry[m].node;
         if (away >= -1 && away <= 1) n[axis] = 0;
     }
@@ -333,10 +336,11 @@ static void weigh_contact(const member *a, const member *b, node_contact *m) {
     }
 }
 
-static member make_member(brunt_body *body, const shared_slot *s, int node, real *at, int entry) {
+static member make_member(const job *j, brunt_body *body, const shared_slot *s, int node, real *at, int entry) {
     member m = {.body = body, .slot = s->slot, .node = at, .entry = entry};
+    m.rests = j->follows && brunt_followed_rests(j->m, body, s->slot, node);
     for (int a = 0; a < body->grid.dim; a++) {
-        const bool fixed = brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
+        const bool fixed = m.rests || brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
         m.v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
         m.inverse[a] = fixed ? 0 : 1 / (double)at[0];
         m.fixed |= fixed;
@@ -344,49 +348,49 @@ static member make_member(brunt_body *body, const shared_slot *s, int node, real
     return m;
 }
 
-// The node has what it was given even where it is held: the condition then takes it, and records it.
-static void scatter_node(const member *m) {
-    for (int a = 0; a < m->body->grid.dim; a++)
+// What a plane that sticks takes of a change of velocity from `old` at a node of it.
+static void bear(const brunt_grid *grid, const real *node, const int32_t at[3], const real old[3],
+                 brunt_impulse_account *bearer) {
+    double J[3] = {0}, x[3] = {0}, turn[3];
+    if (!bearer) return;
+    for (int a = 0; a < grid->dim; a++) {
+        x[a] = grid->origin[a] + (double)grid->h * at[a];
+        J[a] = (double)node[BRUNT_NODE_SPARE] * (double)(node[BRUNT_NODE_VELOCITY + a] - old[a]);
+    }
+    for (int a = 0; a < 3; a++) turn[a] = x[(a + 1) % 3] * J[(a + 2) % 3] - x[(a + 2) % 3] * J[(a + 1) % 3];
+    brunt_impulse_account_reaction(bearer, J, turn);
+}
+
+// The node has what it was given even where it is held: the condition then takes it, and records it. Where it rests on
+// a plane nothing takes it. `bearer`: what takes all that the bodies get together there; NULL.
+static void scatter_node(const job *j, const member *m, int node, brunt_impulse_account *bearer) {
+    const brunt_grid *grid = &m->body->grid;
+    int32_t at[3];
+    real old[3] = {0};
+    memcpy(old, m->node + BRUNT_NODE_VELOCITY, (size_t)grid->dim * sizeof *old);
+    for (int a = 0; a < grid->dim && !m->rests; a++)
         m->node[BRUNT_NODE_VELOCITY + a] =
             (real)(m->inverse[a] > 0 ? m->v[a] : m->v[a] + m->applied[a] / (double)m->node[0]);
-}
-
-// How many nodes from the axis of rings a node is, negative beyond it.
-static int32_t from_axis(const job *j, const shared_slot *s, int node) {
-    const brunt_grid *grid = &j->bodies[s->body].grid;
-    int local[3];
-    brunt_node_local(grid, node, local);
-    return grid->slots[s->slot].coord[j->axis->axis] * grid->side + local[j->axis->axis] - j->axis->node;
-}
-
-// The image of a member's node beyond the axis, NULL when there is none, and the signs of its velocity.
-static real *beyond_axis(const job *j, const member *m, int node, real sign[3]) {
-    const brunt_grid *grid = &m->body->grid;
-    int local[3];
-    int32_t at[3], image[BRUNT_MAX_IMAGES][3];
-    real signs[BRUNT_MAX_IMAGES][3];
-    brunt_node_local(grid, node, local);
-    for (int a = 0; a < 3; a++) at[a] = a < grid->dim ? grid->slots[m->slot].coord[a] * grid->side + local[a] : 0;
-    if (brunt_symmetry_images(j->axis, 1, at, grid->order, image, signs) < 2) return NULL;
-    memcpy(sign, signs[1], 3 * sizeof *sign);
-    real *found = brunt_grid_node(grid, image[1]);
-    return found && found[0] > 0 ? found : NULL;
-}
-
-// Nodes beyond the axis stay the images of those before it, where the bodies have met. The bodies see less of each
-// other there, or nothing: contacts of its own would give two bodies different impulses.
-static void follow_axis(const job *j, const member *m, int node) {
-    real sign[3], *image = beyond_axis(j, m, node, sign);
-    for (int a = 0; image && a < m->body->grid.dim; a++)
-        image[BRUNT_NODE_VELOCITY + a] = sign[a] * m->node[BRUNT_NODE_VELOCITY + a];
+    if (!j->follows) return;
+    brunt_followers images;
+    brunt_node_coordinates(grid, m->slot, node, at);
+    bear(grid, m->node, at, old, bearer);
+    brunt_followers_find(j->m, m->body, m->slot, node, &images);
+    for (int i = 0; i < images.count; i++) {
+        memcpy(old, images.node[i] + BRUNT_NODE_VELOCITY, (size_t)grid->dim * sizeof *old);
+        for (int a = 0; a < grid->dim; a++)
+            images.node[i][BRUNT_NODE_VELOCITY + a] = images.sign[i][a] * m->node[BRUNT_NODE_VELOCITY + a];
+        bear(grid, images.node[i], images.at[i], old, bearer);
+    }
 }
 
 // The body's own share of what a member gets.
 static double own_share(const job *j, const member *m, int node) {
-    const double own = (double)(m->node[BRUNT_NODE_SPARE] / m->node[0]);
-    real sign[3];
-    const real *image = j->axis ? beyond_axis(j, m, node, sign) : NULL;
-    return image ? own + (double)(image[BRUNT_NODE_SPARE] / image[0]) : own;
+    double own = (double)(m->node[BRUNT_NODE_SPARE] / m->node[0]);
+    brunt_followers images = {.count = 0};
+    if (j->follows) brunt_followers_find(j->m, m->body, m->slot, node, &images);
+    for (int i = 0; i < images.count; i++) own += (double)(images.node[i][BRUNT_NODE_SPARE] / images.node[i][0]);
+    return own;
 }
 
 // Bodies at a node of the grids, and the contacts between them.
@@ -401,13 +405,13 @@ static void find_members(const job *j, const group *g, int node, thread_work *th
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
-        if (!(at[0] > 0)) continue;
+        if (!(at[0] > 0) || (j->follows && brunt_followed_behind(j->m, &j->bodies[s->body], s->slot, node))) continue;
         if (here->count == MAX_TOGETHER) {
             brunt_fail(&thread->error, BRUNT_FAILED, "more than %d bodies meet at one grid node", MAX_TOGETHER);
             here->count = 0;
             return;
         }
-        here->members[here->count++] = make_member(&j->bodies[s->body], s, node, at, i);
+        here->members[here->count++] = make_member(j, &j->bodies[s->body], s, node, at, i);
     }
 }
 
@@ -463,8 +467,24 @@ static void account_contact(const job *j, const group *g, int node, const double
         brunt_impulse_account_record(account, &account->friction_loss, friction_impulse, x, old, now, rest);
 }
 
+// Of the group the account of the first plane near the node that some of the bodies there sticks to; NULL: none is.
+static brunt_impulse_account *bearer_at(const job *j, const group *g, int node, const node_contacts *here) {
+    for (int k = 0; k < j->bearers; k++) {
+        const brunt_symmetry_plane *plane = &j->m->symmetry[k];
+        if (!plane->sticks) continue;
+        for (int i = 0; i < here->count; i++) {
+            const member *m = &here->members[i];
+            int32_t at[3];
+            brunt_node_coordinates(&m->body->grid, m->slot, node, at);
+            if (brunt_boundary_acts_on(&j->m->boundaries[plane->boundary], m->body->index) &&
+                brunt_symmetry_before(plane, at) <= m->body->grid.order)
+                return &j->w->accounts[g->account + g->count * (g->count - 1) / 2 + k];
+        }
+    }
+    return NULL;
+}
+
 static void meet_at_node(const job *j, const group *g, int node, thread_work *thread) {
-    if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     node_contacts here;
     here.count = here.contact_count = 0, here.fixed = false;
     find_members(j, g, node, thread, &here);
@@ -482,8 +502,8 @@ static void meet_at_node(const job *j, const group *g, int node, thread_work *th
     for (int q = 0; q < here.contact_count; q++)
         if (here.contacts[q].normal_impulse > 0 || here.contacts[q].law)
             account_contact(j, g, node, x, &here, &here.contacts[q]);
-    for (int i = 0; i < here.count; i++) scatter_node(&here.members[i]);
-    for (int i = 0; j->axis && i < here.count; i++) follow_axis(j, &here.members[i], node);
+    brunt_impulse_account *bearer = bearer_at(j, g, node, &here);
+    for (int i = 0; i < here.count; i++) scatter_node(j, &here.members[i], node, bearer);
 }
 
 static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -505,8 +525,10 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
     if (make_threads(*workspace, m->threads, error)) return BRUNT_FAILED;
     job j = {.m = m, .bodies = m->mpm, .w = *workspace};
     for (int k = 0; k < METHODS; k++) j.law[k] = brunt_contact_node_law((brunt_contact_method)k);
-    for (int k = 0; k < m->symmetry_count; k++)
-        if (m->symmetry[k].boundary < 0) j.axis = &m->symmetry[k];
+    for (int k = 0; k < m->symmetry_count; k++) {
+        j.follows = j.follows || m->symmetry[k].boundary < 0 || m->symmetry[k].sticks;
+        j.bearers = m->symmetry[k].sticks ? m->symmetry_count : j.bearers;
+    }
     if (find_groups(&j, error)) return BRUNT_FAILED;
     for (int t = 0; t < m->threads; t++) j.w->thread[t].error.code = BRUNT_OK;
     brunt_parallel(m->threads, j.w->group_count, 1, meet_blocks, &j, m->timer);
@@ -520,6 +542,9 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
                 int32_t pair = pair_between(&j, j.w->shared[g->first + i].body, j.w->shared[g->first + k].body);
                 if (pair >= 0) brunt_impulse_account_add(&m->pairs[pair].last, &j.w->accounts[at]);
             }
+        for (int k = 0; k < j.bearers; k++, at++)
+            if (m->symmetry[k].sticks)
+                brunt_impulse_account_add(&m->boundaries[m->symmetry[k].boundary].last, &j.w->accounts[at]);
     }
     return BRUNT_OK;
 }

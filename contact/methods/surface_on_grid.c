@@ -215,13 +215,19 @@ static void account_symmetry(const job *j, const contact *c, brunt_boundary *bou
         const link *l = &j->w->link[j->w->by_contact[i]];
         applied += l->own ? l->weight * j->m->surface->mass[l->surface] / c->mass : 0;
     }
-    for (int m = 0; m < j->m->symmetry_count; m++) {
-        const int axis = j->m->symmetry[m].axis;
-        const double plane = grid->origin[axis] + (double)grid->h * j->m->symmetry[m].node;
-        if (j->m->symmetry[m].boundary < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
+    brunt_symmetry_plane near[BRUNT_MAX_PLANES];
+    int near_count = 0;
+    for (int m = 0, count = brunt_symmetry_of(j->m, &j->m->mpm[c->mpm], near); m < count; m++) {
+        const double plane = grid->origin[near[m].axis] + (double)grid->h * near[m].node;
+        if (near[m].boundary >= 0 && fabs(c->x[near[m].axis] - plane) <= 2.5 * (double)grid->h)
+            near[near_count++] = near[m];
+    }
+    for (int a = 0; a < grid->dim; a++) {
+        const int bearer = brunt_symmetry_bearer(near, near_count, a);
         double across[3] = {0};
-        across[axis] = (own - applied) * (c->normal_impulse * c->n[axis] + c->friction_impulse[axis]);
-        brunt_impulse_account_reaction(&boundaries[j->m->symmetry[m].boundary].last, across, none);
+        if (bearer < 0) continue;
+        across[a] = (own - applied) * (c->normal_impulse * c->n[a] + c->friction_impulse[a]);
+        brunt_impulse_account_reaction(&boundaries[near[bearer].boundary].last, across, none);
     }
 }
 

@@ -283,6 +283,8 @@ void brunt_surface_on_grid_reflect(const job *j) {
     brunt_surface_on_grid *w = j->w;
     const int32_t first = j->range->contact, end = j->range->contact_end;
     if (first == end) return;
+    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
+    const int symmetry_count = brunt_symmetry_of(j->m, &j->m->mpm[w->contact[first].mpm], symmetry);
     memset(w->place, 0,
            (size_t)j->m->mpm[w->contact[first].mpm].grid.slot_count * BRUNT_BLOCK_NODES * sizeof *w->place);
     for (int32_t i = first; i < end; i++)
@@ -296,7 +298,7 @@ void brunt_surface_on_grid_reflect(const job *j) {
         double greatest = 0;
         brunt_node_local(grid, c->node, local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[c->slot].coord[a] * grid->side + local[a];
-        const int images = brunt_symmetry_images(j->m->symmetry, j->m->symmetry_count, at, 2, image, sign);
+        const int images = brunt_symmetry_images(symmetry, symmetry_count, at, 2, image, sign);
         for (int q = 0; q < images; q++) {
             slot_cache cached = {.is = false};
             int32_t slot;

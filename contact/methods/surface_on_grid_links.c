@@ -136,13 +136,13 @@ static int add_item(job *j, const grid_place *of, brunt_error *error) {
                 const double share = weight[0][p] * weight[1][q] * weight[2][r];
                 const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
                 if (!(share > 0)) continue;
-                if (!j->m->symmetry_count) {
+                if (!j->symmetry_count) {
                     if (add_link(j, of, at, share, NULL, &cached, error)) return BRUNT_FAILED;
                     continue;
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
                 real sign[BRUNT_MAX_IMAGES][3];
-                int images = brunt_symmetry_images(j->m->symmetry, j->m->symmetry_count, at, 2, image, sign);
+                int images = brunt_symmetry_images(j->symmetry, j->symmetry_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
                     if (add_link(j, of, image[i], share, sign[i], i ? &cached_image : &cached, error))
@@ -164,9 +164,9 @@ static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
     const brunt_contact_surface *s = j->m->surface;
     double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
     bool cut = false;
-    for (int m = 0; m < j->m->symmetry_count; m++) {
-        const int axis = j->m->symmetry[m].axis;
-        const double plane = grid->origin[axis] + (double)grid->h * j->m->symmetry[m].node;
+    for (int m = 0; m < j->symmetry_count; m++) {
+        const int axis = j->symmetry[m].axis;
+        const double plane = grid->origin[axis] + (double)grid->h * j->symmetry[m].node;
         if (fabs(s->x[n][axis] - plane) < CUT * (double)grid->h) normal[axis] = 0, cut = true;
     }
     return cut && dot(normal, normal) < CUT * CUT;
@@ -187,6 +187,7 @@ int brunt_surface_on_grid_link(job *j, int b, brunt_error *error) {
     *r = (range){w->contact_count, w->contact_count, w->item_count, w->item_count};
     double low[3], high[3];
     bool any = false;
+    j->symmetry_count = brunt_symmetry_of(j->m, &j->m->mpm[b], j->symmetry);
     bound_grid(grid, low, high);
     for (int k = 0; k < s->fem_count; k++) {
         brunt_pair *pair = pair_of(j->m, &j->m->mpm[b], s->fem[k]);

@@ -11,6 +11,7 @@
 #include "contact/distance/particle_extent.h"
 #include "contact/distance/point_facet.h"
 #include "contact/methods/surface_on_grid.h"
+#include "contact/planes/symmetry.h"
 #include "grid/bspline.h"
 #include "mpm/mpm_body.h"
 
@@ -86,8 +87,10 @@ struct brunt_surface_on_grid {
 typedef struct job {
     const brunt_contact_context *m;
     brunt_surface_on_grid *w;
-    const range *range;       // contacts and items that are worked on ...
-    int range_mpm, range_fem; // ... of these two
+    const range *range;                              // contacts and items that are worked on ...
+    int range_mpm, range_fem;                        // ... of these two
+    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES]; // that act on the body whose links are made
+    int symmetry_count;
 } job;
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -1,11 +1,15 @@
 // Symmetry planes. A body cut by a symmetry plane that runs through grid nodes is computed as the half of a whole: the
 // mirror image's particles would give the nodes exactly what the body gives to the mirrored nodes. So each node gets
-// its own sums plus the reflected sums of its partner, and node pairs stay each other's reflection from then on. The
-// spare real of a node keeps the mass that the body itself has there, for the energy and momentum ledgers.
+// its own sums plus the reflected sums of its partner, and node pairs stay each other's reflection from then on. What
+// sticks to a plane has an image with opposite velocities and forces in all components: it is at rest just there, for
+// kernels that reach over it as well. The spare real of a node keeps the mass that the body itself has there, for the
+// energy and momentum ledgers.
 #include "contact/planes/symmetry.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+#include "contact/planes/boundary.h"
 
 // Nodes further than the kernel reaches from the plane have no partner with mass on the other side; two layers cover a
 // cubic kernel and a body that has sunk into the plane by less than a cell.
@@ -23,6 +27,15 @@ static void sum_momentum(const real *n, const double x[3], int dim, double facto
         linear[a] += p[a];
         angular[a] += x[i] * p[j] - x[j] * p[i];
     }
+}
+
+// What becomes of a node's real in its image.
+static real turned(const brunt_symmetry_plane *symmetry_plane, int dim, int r) {
+    bool turns = false;
+    for (int a = 0; a < dim; a++)
+        if (a == symmetry_plane->axis || symmetry_plane->sticks)
+            turns = turns || r == BRUNT_NODE_VELOCITY + a || r == BRUNT_NODE_OLD + a;
+    return turns ? -1 : 1;
 }
 
 static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, double taken,
@@ -48,7 +61,8 @@ static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, d
             if (depth == 0) {
                 sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, before,
                              turn_before);
-                n[BRUNT_NODE_VELOCITY + axis] = n[BRUNT_NODE_OLD + axis] = 0;
+                for (int a = 0; a < dim; a++)
+                    if (a == axis || symmetry_plane->sticks) n[BRUNT_NODE_VELOCITY + a] = n[BRUNT_NODE_OLD + a] = 0;
                 sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, after, turn_after);
                 continue;
             }
@@ -62,7 +76,7 @@ static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, d
             sum_momentum(n, x, dim, own_n, taken, before, turn_before);
             sum_momentum(m, y, dim, own_m, taken, before, turn_before);
             for (int r = 0; r < BRUNT_NODE_SPARE; r++) {
-                real sign = r == BRUNT_NODE_VELOCITY + axis || r == BRUNT_NODE_OLD + axis ? -1 : 1;
+                const real sign = turned(symmetry_plane, dim, r);
                 m[r] += sign * n[r];
                 n[r] = sign * m[r];
             }
@@ -99,11 +113,11 @@ static void share_sums(const brunt_body *body, const brunt_symmetry_plane symmet
         if (!node[i]) continue;
         for (int a = 0; a < grid->dim; a++) x[a] = grid->origin[a] + (double)grid->h * image[i][a];
         sum_momentum(node[i], x, grid->dim, own_share(node[i]), taken, sums[0], sums[1]);
-        for (int r = 0; r < BRUNT_NODE_SPARE && i != from; r++) {
-            const bool across = r == BRUNT_NODE_VELOCITY + axis || r == BRUNT_NODE_OLD + axis;
-            node[i][r] = (across ? sign[i][axis] * sign[from][axis] : 1) * node[from][r];
+        for (int r = 0; r < BRUNT_NODE_SPARE && i != from; r++) node[i][r] = node[from][r];
+        for (int a = 0; a < grid->dim; a++) {
+            const real factor = i == from && sign[i][a] != 0 ? 1 : sign[i][a] * sign[from][a];
+            node[i][BRUNT_NODE_VELOCITY + a] *= factor, node[i][BRUNT_NODE_OLD + a] *= factor;
         }
-        if (sign[i][axis] == 0) node[i][BRUNT_NODE_VELOCITY + axis] = node[i][BRUNT_NODE_OLD + axis] = 0;
         sum_momentum(node[i], x, grid->dim, own_share(node[i]), taken, sums[2], sums[3]);
     }
 }
@@ -186,6 +200,23 @@ void brunt_symmetry_carry(const brunt_body *body, const brunt_symmetry_plane *sy
 }
 
 // ------------------------------------------------------------------------------------------ images
+
+int brunt_symmetry_of(const brunt_contact_context *m, const brunt_body *body,
+                      brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
+    int count = 0;
+    for (int k = 0; k < m->symmetry_count; k++)
+        if (m->symmetry[k].boundary < 0 || brunt_boundary_acts_on(&m->boundaries[m->symmetry[k].boundary], body->index))
+            out[count++] = m->symmetry[k];
+    return count;
+}
+
+int brunt_symmetry_bearer(const brunt_symmetry_plane *symmetry, int symmetry_count, int axis) {
+    int bearer = BRUNT_NONE;
+    for (int k = symmetry_count - 1; k >= 0; k--)
+        if (symmetry[k].axis == axis || (symmetry[k].sticks && (bearer < 0 || symmetry[bearer].axis != axis)))
+            bearer = k;
+    return bearer;
+}
 
 // Adds the images of those there are by one symmetry plane; where it goes through one, nothing moves them along its
 // axis.

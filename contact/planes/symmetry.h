@@ -2,14 +2,16 @@
 #pragma once
 
 #include "contact/constraint/impulse_account.h"
+#include "contact/contact.h"
 #include "mpm/mpm_body.h"
 
-// A symmetry plane through grid nodes `node` along `axis`: symmetry, and slip planes that lie on a grid line; in
-// implicit steps such ones that stick, which splines keep at rest where the images of all velocities are opposite.
+// A symmetry plane through grid nodes `node` along `axis`: symmetry, and slip planes that lie on a grid line; such ones
+// that stick, too, which splines keep at rest where the images of all velocities are opposite.
 typedef struct brunt_symmetry_plane {
     int axis;
     int32_t node;
-    bool sticks;  // implicit steps: no velocity, but opposite ones of images, not only across it
+    int side;     // of it, along the axis, on which the bodies are: 1, -1
+    bool sticks;  // no velocity, but opposite ones of images, not only across it
     int boundary; // -1: the axis of revolution of rings, which is there for every body and gives no impulse
 } brunt_symmetry_plane;
 
@@ -28,6 +30,11 @@ void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane 
 // Books that afterwards, `reach` = dt a [s], with the account of the plane that is near.
 void brunt_symmetry_carry(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
                           const double *own, double reach, brunt_impulse_account *const *account);
+// The symmetry planes that act on a body, and their number.
+int brunt_symmetry_of(const brunt_contact_context *m, const brunt_body *body,
+                      brunt_symmetry_plane out[BRUNT_MAX_PLANES]);
+// Which of them takes what acts along an axis: the first across it, else the first that sticks, BRUNT_NONE.
+int brunt_symmetry_bearer(const brunt_symmetry_plane *symmetry, int symmetry_count, int axis);
 // Images of a node coordinate under the symmetry planes it is near to (within the kernel), itself first, and the images
 // of these, as between two symmetry planes; `sign` of each velocity component, 0 across a symmetry plane that one of
 // them lies on. The same nodes whichever of them is given.

@@ -85,24 +85,13 @@ void brunt_particle_dofs_free(brunt_particle_dofs *dofs) {
     memset(dofs, 0, sizeof *dofs);
 }
 
-// The symmetry planes that act on a body.
-static int symmetry_of(const brunt_contact_context *m, const brunt_body *body,
-                       brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
-    int count = 0;
-    for (int k = 0; k < m->symmetry_count && count < BRUNT_MAX_PLANES; k++) {
-        int on = m->symmetry[k].boundary < 0 ? -1 : m->boundaries[m->symmetry[k].boundary].body;
-        if (on < 0 || on == body->index) out[count++] = m->symmetry[k];
-    }
-    return count;
-}
-
 int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs,
                               brunt_error *error) {
     const size_t count = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
     if (BRUNT_CAPACITY(dofs->of, count, 0, "grid nodes of a body in contact", error)) return BRUNT_FAILED;
     for (int32_t g = 0; g < dofs->dof_count; g++) dofs->of[dofs->dof[g].node] = 0;
     dofs->dof_count = 0;
-    dofs->symmetry_count = symmetry_of(m, body, dofs->symmetry);
+    dofs->symmetry_count = brunt_symmetry_of(m, body, dofs->symmetry);
     return BRUNT_OK;
 }
 
@@ -112,6 +101,10 @@ static int make_dof_node(const brunt_grid *grid, const int32_t at[3], brunt_part
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
     int images = brunt_symmetry_images(dofs->symmetry, dofs->symmetry_count, at, IMAGE_LAYERS, image, sign);
+    unsigned on_plane = 0;
+    for (int i = 0; i < images; i++)
+        for (int k = 0; k < dofs->symmetry_count; k++)
+            if (image[i][dofs->symmetry[k].axis] == dofs->symmetry[k].node) on_plane |= 1u << dofs->symmetry[k].axis;
     int32_t dof_node = brunt_constraints_dof_node(set, error);
     if (dof_node < 0) return BRUNT_FAILED;
     for (int i = 0; i < images; i++) {
@@ -122,6 +115,7 @@ static int make_dof_node(const brunt_grid *grid, const int32_t at[3], brunt_part
         brunt_grid_dof *entry = &dofs->dof[dofs->dof_count];
         *entry = (brunt_grid_dof){.node = number, .dof_node = dof_node};
         for (int a = 0; a < 3; a++) entry->sign[a] = (double)sign[i][a];
+        entry->on_plane = on_plane;
         dofs->of[number] = ++dofs->dof_count;
         brunt_dof_node *dof = &set->dof_node[dof_node];
         for (int a = 0; a < grid->dim && i == 0; a++) {
@@ -153,7 +147,7 @@ static double image_share(const brunt_grid *grid, const brunt_particle_dofs *dof
     for (int e = 0; e < under->count; e++) {
         const brunt_grid_dof *g = dof_under(grid, dofs, under, e);
         double mass = (double)under->node[e][BRUNT_NODE_MASS];
-        for (int a = 0; a < grid->dim; a++) mass *= g->sign[a] == 0 ? 2 : 1;
+        for (int a = 0; a < grid->dim; a++) mass *= g->on_plane >> a & 1 ? 2 : 1;
         for (int a = 0; a < grid->dim; a++)
             sum -= brunt_node_held(grid, g->node, a) ? 0 : pow(n[a] * under->weight[e], 2) / mass;
     }
@@ -227,10 +221,9 @@ static void account_symmetry(const brunt_contact_context *m, const brunt_particl
     if (planes[0].boundary >= 0) brunt_impulse_account_reaction(&m->boundaries[planes[0].boundary].last, none, angular);
     for (int a = 0; a < 3; a++) {
         double across[3] = {0};
-        int i = 0;
+        const int i = brunt_symmetry_bearer(planes, dofs->symmetry_count, a);
         across[a] = linear[a];
-        while (i < dofs->symmetry_count && planes[i].axis != a) i++;
-        if (i < dofs->symmetry_count && planes[i].boundary >= 0)
+        if (i >= 0 && planes[i].boundary >= 0)
             brunt_impulse_account_reaction(&m->boundaries[planes[i].boundary].last, across, none);
     }
 }

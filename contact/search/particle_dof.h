@@ -42,6 +42,7 @@ typedef struct brunt_grid_dof {
     int32_t dof_node;
     double sign[3]; // v of the node is that of the degree-of-freedom node, turned over by symmetry planes; 0 across one
                     // it lies on
+    unsigned on_plane; // the axes (bits) of symmetry planes that it lies on
 } brunt_grid_dof;
 
 // Of the grid of one body, in one set of constraints.

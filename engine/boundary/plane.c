@@ -108,7 +108,8 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
                "(cell %g m)",
                index, boundary->name, def->cell);
     // Nodes of splines that hold on a line of the grid would hold half a cell before it; images hold what is there.
-    const bool odd = on_line && row->sticks && def->kernel == BRUNT_QUADRATIC && brunt_scheme_minimises(def->scheme);
+    // What is behind it from the start they cannot: hold_what_is_behind of world.c.
+    const bool odd = on_line && row->sticks && def->kernel != BRUNT_LINEAR;
     if (on_line && (row->symmetry || odd)) {
         if (all->symmetry_count == (int)(sizeof all->symmetry / sizeof all->symmetry[0]))
             REFUSE("boundaries: more than 16 planes of symmetry or on lines of the grid");
@@ -124,8 +125,11 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
                     index, boundary->name, all->boundary[other->boundary].name, abs(apart), (int)def->kernel + 1);
         }
         boundary->symmetry_plane = all->symmetry_count;
-        all->symmetry[all->symmetry_count++] =
-            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .sticks = odd, .boundary = index};
+        all->symmetry[all->symmetry_count++] = (brunt_symmetry_plane){.axis = axis,
+                                                                      .node = (int32_t)round(at),
+                                                                      .side = plane->normal[axis] > 0 ? 1 : -1,
+                                                                      .sticks = odd,
+                                                                      .boundary = index};
         return BRUNT_OK;
     }
     // On a line of the grid nodes hold; elsewhere those behind it would, as much as a cell away.

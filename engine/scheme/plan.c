@@ -90,8 +90,8 @@ static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
     X(total_lagrangian, has_total_lagrangian(&world->bodies), "bodies: lagrangian total")                              \
     X(boundaries, world->boundaries.meets_points, "boundaries: condition separate, line, mesh")                        \
     X(axisymmetric, world->settings.axisymmetric, "axisymmetric")                                                      \
-    X(symmetry, has_symmetry_planes(&world->boundaries), "boundaries: condition symmetry or slip")                     \
-    X(conditions, world->boundaries.has_conditions, "boundaries: stick, oblique slip, region")                         \
+    X(symmetry, has_symmetry_planes(&world->boundaries), "boundaries: condition symmetry, slip or stick")              \
+    X(conditions, world->boundaries.has_conditions, "boundaries: planes that hold nodes, region")                      \
     X(erosion, world->erosion.active, "bodies: erosion, materials: failure")                                           \
     X(softening, has_softening(&world->bodies), "materials: failure.action soften")                                    \
     X(detonation, world->boundaries.has_detonations, "detonations")                                                    \

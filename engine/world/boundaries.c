@@ -14,8 +14,8 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
     all->boundary_count = brunt_boundary_entry_count(def);
     if (BRUNT_NEW(all->boundary, all->boundary_count + 1, "boundaries", error)) return BRUNT_FAILED;
     if (def->axisymmetric && world->bodies.has_particles)
-        all->symmetry[all->symmetry_count++] =
-            (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .boundary = -1};
+        all->symmetry[all->symmetry_count++] = (brunt_symmetry_plane){
+            .axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .side = 1, .boundary = -1};
     for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(def, &e);) {
         brunt_boundary *boundary = &all->boundary[e.w];
         const char *body = e.kind->body ? e.kind->body(e.entry) : "";

@@ -59,35 +59,61 @@ int brunt_reports_make(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// How far body i reaches behind a plane [m]; 0 where that is rounding, or the edge of what the body is made of.
+static double depth_behind(const brunt_world *world, const brunt_plane_def *plane, int i) {
+    brunt_body *mpm = world->bodies.all[i].mpm;
+    const brunt_fem_body *fem = world->bodies.all[i].fem;
+    const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
+    real *const *x = mpm ? brunt_field(&mpm->particles, BRUNT_FIELD_position) : NULL;
+    double least = 0, size = world->bodies.all[i].ops->fineness(&world->bodies.all[i]), far = 0;
+    for (int64_t s = 0; s < count; s++) {
+        double distance = 0;
+        for (int a = 0; a < world->settings.dimension; a++) {
+            const double place = (double)(mpm ? x[a][s] : brunt_fem_node(fem, (int32_t)s)[a]);
+            distance += plane->normal[a] * (place - plane->point[a]);
+            far = fmax(far, fabs(place));
+        }
+        least = fmin(least, distance);
+    }
+    return least < -(1e-3 * size + 1e-6 * far) ? -least : 0;
+}
+
+// A plane that sticks holds all that is behind it from the start, which images cannot: then nodes hold.
+static void hold_what_is_behind(brunt_world *world) {
+    brunt_boundaries *all = &world->boundaries;
+    for (int k = all->symmetry_count - 1; k >= 0; k--) {
+        bool behind = false;
+        for (int i = 0; i < world->bodies.count && all->symmetry[k].sticks; i++)
+            behind = behind || (world->bodies.all[i].mpm &&
+                                brunt_boundary_acts_on(&all->boundary[all->symmetry[k].boundary], i) &&
+                                depth_behind(world, &all->boundary[all->symmetry[k].boundary].plane, i) > 0);
+        if (!behind) continue;
+        all->has_conditions = true;
+        all->boundary[all->symmetry[k].boundary].symmetry_plane = BRUNT_NONE;
+        all->symmetry_count--;
+        for (int q = k; q < all->symmetry_count; q++) {
+            all->symmetry[q] = all->symmetry[q + 1];
+            all->boundary[all->symmetry[q].boundary].symmetry_plane = q;
+        }
+    }
+}
+
 // A plane of symmetry stands for what is behind it: what a body has there would be there twice.
-static int check_symmetry(const brunt_world *world, brunt_error *error) {
+static int check_symmetry(brunt_world *world, brunt_error *error) {
     for (int w = 0; w < world->boundaries.boundary_count; w++) {
         const brunt_boundary *boundary = &world->boundaries.boundary[w];
-        const double *n = boundary->plane.normal, *at = boundary->plane.point;
         if (!boundary->kind->is_plane || !brunt_conditions[boundary->plane.condition].images) continue;
         const int only = boundary->body, first = only < 0 ? 0 : only, end = only < 0 ? world->bodies.count : only + 1;
         for (int i = first; i < end; i++) {
-            brunt_body *mpm = world->bodies.all[i].mpm;
-            const brunt_fem_body *fem = world->bodies.all[i].fem;
-            const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
-            real *const *x = mpm ? brunt_field(&mpm->particles, BRUNT_FIELD_position) : NULL;
-            double least = 0, size = world->bodies.all[i].ops->fineness(&world->bodies.all[i]), far = 0;
-            for (int64_t s = 0; s < count; s++) {
-                double distance = 0;
-                for (int a = 0; a < world->settings.dimension; a++) {
-                    const double place = (double)(mpm ? x[a][s] : brunt_fem_node(fem, (int32_t)s)[a]);
-                    distance += n[a] * (place - at[a]);
-                    far = fmax(far, fabs(place));
-                }
-                least = fmin(least, distance);
-            }
-            if (least < -(1e-3 * size + 1e-6 * far))
+            const double depth = depth_behind(world, &boundary->plane, i);
+            if (depth > 0)
                 REFUSE(
                     "bodies.%s: it reaches %.4g m behind the plane of symmetry '%s', which stands for what is there: "
                     "cut the body at the plane",
-                    brunt_body_name(world, i), -least, boundary->name);
+                    brunt_body_name(world, i), depth, boundary->name);
         }
     }
+    hold_what_is_behind(world);
     return BRUNT_OK;
 }
 

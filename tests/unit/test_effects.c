@@ -77,6 +77,7 @@ static void self(scene *s) {
 }
 static void add_plane(scene *s) { s->def.planes = &s->plane, s->def.plane_count = 1; }
 static void stick(scene *s) { add_plane(s), s->plane.condition = BRUNT_STICK; }
+static void move_stick(scene *s) { stick(s), s->plane.velocity[1] = 1; }
 static void mirror(scene *s) { add_plane(s), s->plane.condition = BRUNT_SYMMETRY; }
 static void rough(scene *s) { add_plane(s), s->plane.friction = 0.3; }
 static void hexes(scene *s) { s->bodies[0].element = BRUNT_HEX8; }
@@ -163,7 +164,8 @@ static const asked list[] = {
     {"a pair without contact", make_points, apart, ""},
     {"plane", make_points, add_plane, "boundaries "},
     {"rough plane", make_points, rough, "friction boundaries "},
-    {"stick", make_points, stick, "conditions "},
+    {"stick", make_points, stick, "symmetry "},
+    {"stick that moves", make_points, move_stick, "conditions "},
     {"symmetry", make_points, mirror, "symmetry "},
     {"strain", make_points, strain, "erosion "},
     {"plasticity", make_points, plastic, "plasticity "},

@@ -597,6 +597,7 @@ static void ask_plane(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(
 static void ask_rough_plane(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0.1); }
 static void ask_symmetry(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SYMMETRY, 0); }
 static void ask_stick(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_STICK, 0); }
+static void ask_stick_off_line(brunt_world_def *def) { def_plane(def, XYZ(0, -1.03, 0), XYZ(0, 1, 0), BRUNT_STICK, 0); }
 static void ask_plasticity(brunt_world_def *def) {
     snprintf(def->materials[0].strength, sizeof def->materials[0].strength, "von-mises");
     def->materials[0].strength_parameters[2] = 1e4;
@@ -621,7 +622,8 @@ static const struct {
     {"wall", ask_plane, "boundaries ", "boundaries ", "reach "},
     {"rough wall", ask_rough_plane, "friction boundaries ", "boundaries ", "reach "},
     {"mirror", ask_symmetry, "symmetry ", "symmetry ", ""},
-    {"stick", ask_stick, "conditions ", "conditions ", ""},
+    {"stick", ask_stick, "symmetry ", "symmetry ", ""},
+    {"stick off a line", ask_stick_off_line, "conditions ", "conditions ", ""},
     {"plasticity", ask_plasticity, "plasticity ", "", "elastic_left_cauchy_green plastic_strain plastic_work "},
     {"viscosity", ask_viscosity, "bulk_viscosity ", "", "viscous_work viscous_pressure "},
 };

@@ -1,0 +1,61 @@
+#include "contact/planes/followed.h"
+
+#include <string.h>
+
+// The planes whose images follow that act on a body.
+static int planes_of(const brunt_contact_context *m, const brunt_body *body,
+                     brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
+    const int all = brunt_symmetry_of(m, body, out);
+    int count = 0;
+    for (int k = 0; k < all; k++)
+        if (out[k].boundary < 0 || out[k].sticks) out[count++] = out[k];
+    return count;
+}
+
+void brunt_node_coordinates(const brunt_grid *grid, int32_t slot, int node, int32_t at[3]) {
+    int local[3];
+    brunt_node_local(grid, node, local);
+    for (int a = 0; a < 3; a++) at[a] = a < grid->dim ? grid->slots[slot].coord[a] * grid->side + local[a] : 0;
+}
+
+int32_t brunt_symmetry_before(const brunt_symmetry_plane *plane, const int32_t at[3]) {
+    return plane->side * (at[plane->axis] - plane->node);
+}
+
+bool brunt_followed_behind(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node) {
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    const int count = planes_of(m, body, plane);
+    int32_t at[3];
+    bool behind = false;
+    brunt_node_coordinates(&body->grid, slot, node, at);
+    for (int k = 0; k < count; k++) behind = behind || brunt_symmetry_before(&plane[k], at) < 0;
+    return behind;
+}
+
+bool brunt_followed_rests(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node) {
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    const int count = planes_of(m, body, plane);
+    int32_t at[3];
+    bool rests = false;
+    brunt_node_coordinates(&body->grid, slot, node, at);
+    for (int k = 0; k < count; k++) rests = rests || (plane[k].sticks && brunt_symmetry_before(&plane[k], at) == 0);
+    return rests;
+}
+
+void brunt_followers_find(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node,
+                          brunt_followers *out) {
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    const int count = planes_of(m, body, plane);
+    int32_t at[3], image[BRUNT_MAX_IMAGES][3];
+    real sign[BRUNT_MAX_IMAGES][3];
+    out->count = 0;
+    brunt_node_coordinates(&body->grid, slot, node, at);
+    const int images = brunt_symmetry_images(plane, count, at, body->grid.order, image, sign);
+    for (int i = 1; i < images; i++) {
+        real *found = brunt_grid_node(&body->grid, image[i]);
+        if (!found || !(found[BRUNT_NODE_MASS] > 0)) continue;
+        memcpy(out->at[out->count], image[i], sizeof image[i]);
+        memcpy(out->sign[out->count], sign[i], sizeof sign[i]);
+        out->node[out->count++] = found;
+    }
+}
