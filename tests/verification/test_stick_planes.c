@@ -246,7 +246,53 @@ START_TEST(meets) {
     if (which != MESH_BESIDE || augury) ck_assert_double_le(m.angular_drift, 10 * ROUNDING);
     ck_assert_double_gt(l->side * world_pair(world, 0).impulse[across], 0);
     ck_assert_double_gt(gap, which == MESH_BESIDE ? 0 : 0.2 * H);
+    if (which == ON_A_THIN_ONE) // more than what stops it
+        ck_assert_double_gt(l->side * world_pair(world, 0).impulse[across], 1.2 * b.mass);
     ck_assert_double_le(fabs(world_energy(world).error_relative), 2e-2);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Greatest velocity, beside the opposite one of its image, of a node before the plane of body a; *most: of any node.
+static double off_images(const brunt_world *world, double *most) {
+    const brunt_symmetry_plane *p = &world->boundaries.symmetry[0];
+    const brunt_grid *grid = &world->bodies.mpm[0].grid;
+    double off = 0;
+    *most = 0;
+    for (int32_t s = 0; s < grid->slot_count; s++)
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
+            int local[3];
+            int32_t at[3] = {0};
+            brunt_node_local(grid, node, local);
+            for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[s].coord[a] * grid->side + local[a];
+            const real *n = brunt_grid_node(grid, at);
+            at[p->axis] = 2 * p->node - at[p->axis];
+            const real *image = brunt_grid_node(grid, at);
+            for (int a = 0; a < grid->dim; a++) {
+                const double v = (double)n[BRUNT_NODE_VELOCITY + a];
+                *most = fmax(*most, fabs(v));
+                if (image && image[0] > 0 && n[0] > 0)
+                    off = fmax(off, fabs(v + (double)image[BRUNT_NODE_VELOCITY + a]));
+            }
+        }
+    return off;
+}
+
+// Whatever pushes them, nodes behind the plane have opposite velocities, and those on it none.
+START_TEST(images_follow) {
+    const lie *l = &lies[_i / 2 % LIES];
+    const meeting which = (meeting)(_i / 2 / LIES);
+    brunt_world_def def = meeting_of(l, which, 0.3, _i % 2);
+    brunt_world *world = world_take(&def);
+    double worst = 0, most = 0;
+    for (int k = 0; k < 20; k++) {
+        world_steps(world, 3);
+        worst = fmax(worst, off_images(world, &most));
+    }
+    printf("  %dD along %d, side %+g, %s%s: off by %.1e of %.1e m/s\n", l->dimension, l->axis, l->side,
+           meeting_names[which], _i % 2 ? ", augury" : "", worst, most);
+    ck_assert_double_gt(most, 0.1);
+    ck_assert_double_le(worst, ROUNDING);
     brunt_world_destroy(world);
 }
 END_TEST
@@ -350,6 +396,7 @@ int main(void) {
     ADD_LOOP(in_a_corner_as_the_whole, 2 * LIES);
     ADD_LOOP(between_planes, 6);
     ADD_LOOP(meets, 2 * MEETINGS * LIES);
+    ADD_LOOP(images_follow, 2 * MEETINGS * LIES);
     ADD_LOOP(as_against_symmetry, LIES);
     ADD_LOOP(nodes_hold, 4);
     ADD_LOOP(others_keep_images, 3);
