@@ -120,6 +120,8 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier);
 brunt_term brunt_barrier_friction_term(brunt_barrier *barrier);
 // Takes normal forces and directions of friction at u.
 int brunt_barrier_lag(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
+// Sum of the greatest friction by those, where it has an end [N].
+double brunt_barrier_bound(const brunt_barrier *barrier);
 // Friction is that of the normal forces and directions at u, wherever it is asked for: it has no potential then, only
 // forces, whose derivative is not symmetric. Until it is told to go by the last lag again.
 void brunt_barrier_follow(brunt_barrier *barrier, bool live);

@@ -144,6 +144,15 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
     return barrier_make_sets(b, &b->lagged, &b->lagged_sets, error);
 }
 
+double brunt_barrier_bound(const brunt_barrier *b) {
+    double sum = 0;
+    for (int64_t i = 0; i < b->lagged.count; i++) {
+        const double friction = barrier_law_of(b, b->lagged.contact[i].law).friction;
+        if (friction < INFINITY) sum += b->lagged.contact[i].normal_force * friction;
+    }
+    return sum;
+}
+
 void brunt_barrier_follow(brunt_barrier *b, bool live) { b->live = live; }
 
 typedef struct slip_work {

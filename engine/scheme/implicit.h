@@ -76,6 +76,7 @@ struct brunt_implicit {
     brunt_ghost ghost;
     brunt_balance balance; // of the last load step; not of the state
     bool rubs;             // there is friction
+    bool rubs_late;        // from here on by the pressures of the step before; not of the state
     bool forces;           // materials without a potential: Newton's method has no energy to lower
     int friction_iterations;
     double *moved; // [m] of the particles of a body: a field of the unknowns where they are

@@ -380,6 +380,29 @@ static void look_ahead(brunt_world *world, double dt, brunt_newton_report *repor
     m->options.tolerance = asked;
 }
 
+// Friction goes by the pressures of the step before: over a touch each rubs once, and all of it comes to Coulomb's law.
+// What gaps that bodies are given at the start would press need not be what does: friction is by the pressures of the
+// step itself from there, until these change little from step to step, or nothing presses.
+static int rub(brunt_world *world, brunt_newton_report *report, brunt_error *error) {
+    enum { OWN = 8 };
+    static const double LITTLE = 0.1, SAME = 0.01;
+    struct brunt_implicit *m = world->plan.implicit;
+    const bool own = world->clock.rubs_late == 0;
+    const double before = own ? brunt_barrier_bound(m->contact.barrier) : 0;
+    const int solutions = own && m->friction_iterations < OWN ? OWN : m->friction_iterations;
+    bool settled = false; // pressures are those that friction went by: a first correction is below the tolerance
+    for (int k = 1; !settled && k < solutions; k++) {
+        const double last = brunt_barrier_bound(m->contact.barrier);
+        if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error) || minimise(m, report, error))
+            return BRUNT_FAILED;
+        const double bound = brunt_barrier_bound(m->contact.barrier);
+        settled = report->iterations <= 1 || (k >= m->friction_iterations && fabs(bound - last) <= SAME * bound);
+    }
+    const double now = own ? brunt_barrier_bound(m->contact.barrier) : 0;
+    m->rubs_late = fabs(now - before) <= LITTLE * now;
+    return BRUNT_OK;
+}
+
 static int try_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     *report = (brunt_newton_report){.result = BRUNT_NEWTON_BROKEN, .residual_dof = -1};
@@ -387,13 +410,7 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     int status = find_tractions(world, dt, report, error);
     if (!status && brunt_static_guesses(m)) look_ahead(world, dt, report);
     if (!status) status = solve_step(world, dt, report, error);
-    bool settled = false; // pressures are those that friction went by: a first correction is below the tolerance
-    for (int k = 1; !status && m->rubs && !m->still && !settled && k < m->friction_iterations; k++) {
-        if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
-        status = minimise(m, report, error);
-        settled = report->iterations <= 1;
-    }
-    return status;
+    return status || !m->rubs || m->still ? status : rub(world, report, error);
 }
 
 // Whether nothing outside the bodies acts along an axis but loads: no node is held, no plane pushes or mirrors.
@@ -473,6 +490,7 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     balance_sums(m);
     sum.steps = 1;
     m->tried = sum;
+    if (m->rubs && m->rubs_late) world->clock.rubs_late = 1;
     step->dt = step->kick = m->dt;
     return check_planes(world, error);
 }

@@ -14,6 +14,7 @@ struct brunt_clock {
     bool creep_told;                         // that steps have become short; not of the state
     bool withdrawn;                          // the last step failed and changed nothing; not of the state
     int64_t gap_told, chatter_told;          // implicit: 1 once a gap has become small, a step too long for a barrier
+    int64_t rubs_late;                       // ... once friction goes by the pressures of the step before
 };
 
 // The start: the first step is `stable` [s], or `fixed` where that is not 0. Nothing to free; all of it is saved by

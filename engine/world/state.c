@@ -88,7 +88,7 @@ static const brunt_saved newton_table[] = {
     LEDGER(scheme),           LEDGER(barrier),  NEWTON(steps),       NEWTON(iterations),
     NEWTON(iterations_worst), NEWTON(halvings), NEWTON(projections), NEWTON(linear_iterations),
     NEWTON(factorisations),   NEWTON(cuts),     NEWTON(residual),    NEWTON(least_gap),
-    NEWTON(least_part),       CLOCK(gap_told),  CLOCK(chatter_told),
+    NEWTON(least_part),       CLOCK(gap_told),  CLOCK(chatter_told), CLOCK(rubs_late),
 };
 #define ACCOUNT(member) BRUNT_SAVED(brunt_impulse_account, member)
 static const brunt_saved account_table[] = {ACCOUNT(impulse),     ACCOUNT(angular),       ACCOUNT(external_work),

@@ -24,7 +24,6 @@ static brunt_world_def begin(int i) {
     def_material(&def, "neo-hookean", DENSITY, YOUNG, 0);
     def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
     if (implicit_of(i)) go_implicit(&def, BRUNT_EULER, 2e-3), def.newton.tolerance = 1e-9;
-    def.contact.friction_iterations = 4; // with the pressures of the step before, what bounces rubs by too much
     def.gravity[1] = -G;
     return def;
 }
