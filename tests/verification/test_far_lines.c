@@ -3,6 +3,7 @@
 
 #include "tests/support/implicit_world.h"
 #include "tests/support/surface_world.h"
+#include "scheme/implicit.h"
 #include "world/world.h"
 
 #ifdef BRUNT_FLOAT
@@ -55,10 +56,54 @@ START_TEST(far_changes_nothing) {
 }
 END_TEST
 
+// A grain that is drawn out to `gap` from a line that none of its nodes reaches: its lowest points are 0.275 m above
+// the origin, and have boxes of 0.025 m; the line is at 0.03 m. A grain of next to no stiffness.
+static brunt_world *drawn_out(double gap, double speed, double step) {
+    brunt_world_def def = def_begin(2, 0.1);
+    def_material(&def, "neo-hookean", 1000, 1e-6, 0);
+    hold_by_surfaces(&def, 2, step);
+    def_velocity(def_box(&def, "grain", XYZ(0.2, 0.25, 0), XYZ(0.4, 0.35, 0)), 0, -speed, 0);
+    def_line(&def, -2, 0.03, 3, 0.03, BRUNT_SEPARATE)->friction = 0.3;
+    brunt_world *world = world_take(&def);
+    const double stretch = (0.275 - 0.03 - gap) / 0.025;
+    brunt_particles *p = &world->bodies.mpm[0].particles;
+    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    for (int64_t s = 0; s < p->slots; s++) F[0][s] = (real)(1 / stretch), F[3][s] = (real)stretch;
+    return world;
+}
+
+// What its nodes do not reach holds nothing, and ends nothing where it has come (a tenth of a cell).
+START_TEST(end_of_a_drawn_grain_is_there) {
+    brunt_world *world = drawn_out(_i ? 0.008 : 0.002, _i ? 6 : 0, 1e-3);
+    brunt_newton_counts counts;
+    world_steps(world, _i ? 1 : 3);
+    brunt_world_newton(world, &counts, NULL);
+    const brunt_reaction f = world_boundary(world, 0);
+    ck_assert_int_gt(world->plan.implicit->rows.reached, 0);
+    ck_assert_double_eq(counts.cuts, 0);
+    ck_assert_double_eq(hypot(f.impulse[0], f.impulse[1]), 0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// What comes from farther than that has shorter steps, until nodes of it see the line.
+START_TEST(end_of_a_drawn_grain_comes) {
+    brunt_world *world = drawn_out(0.04, 1, 0.05);
+    brunt_newton_counts counts;
+    world_steps(world, 1);
+    brunt_world_newton(world, &counts, NULL);
+    printf("  %g cuts\n", (double)counts.cuts);
+    ck_assert_double_gt(counts.cuts, 0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("far_lines");
     ADD_LOOP(far, 12);
     ADD_LOOP(far_changes_nothing, 2);
+    ADD_LOOP(end_of_a_drawn_grain_is_there, 2);
+    ADD_LOOP(end_of_a_drawn_grain_comes, 1);
     return suite_main(suite);
 }
 #endif
