@@ -266,7 +266,7 @@ int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, cons
                              brunt_error *error) {
     const build b = {.world = world, .looks = true, .adds = true};
     rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
-    rows->dt = dt, rows->swept = 0;
+    rows->dt = dt, rows->swept = 0, rows->bends = false;
     if (BRUNT_CAPACITY(rows->first, 1, 0, "pieces of boundaries", error) ||
         BRUNT_CAPACITY(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error) || reserve_gaps(rows, error))
         return BRUNT_FAILED;

@@ -24,6 +24,7 @@ typedef struct brunt_boundary_patch {
     double bound;                  // [Pa] most friction
     double from[3], to[3];         // [Pa] l before the step of Newton's method that is made, and after the whole of it
     bool stiff[2];                 // whether the matrix has row 0, the others
+    double slid[2];                // [Pa] which way it slipped in the last matrix; 0: it did not
 } brunt_boundary_patch;
 
 typedef struct brunt_boundary_rows {
@@ -44,6 +45,7 @@ typedef struct brunt_boundary_rows {
     double cell, dt; // [m], [s]
     bool still;      // load steps: no inertia
     bool forces;     // there is no energy
+    bool bends; // ... and bounds of friction follow pressures within Newton's method, after the step's first solution
     int64_t reached; // boundary particles with a distance
     bool any_leave;  // surfaces that material may leave
     // One that material comes to from where no node of it is, one that it went through, NULL: none.

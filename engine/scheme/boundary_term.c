@@ -117,8 +117,18 @@ static brunt_stencils rows_stencils(void *term) {
     return (brunt_stencils){.count = r->patch_count, .first = r->first, .node = r->node, .version = r->version};
 }
 
-// Derivative of t by gap, times D: of what pushes or is held, and of friction within or on the cone.
-static void slopes(brunt_boundary_patch *p, const double wanted[3], double slope[9]) {
+// Whether what slips has slipped the other way in the last matrix: with no stiffness along its way it goes to and fro
+// past where it sticks.
+static bool turns_back(brunt_boundary_patch *p, const double wanted[3], bool slips) {
+    const double along = p->slid[0] * wanted[1] + p->slid[1] * wanted[2];
+    for (int k = 0; k < 2; k++) p->slid[k] = slips ? wanted[1 + k] : 0;
+    return slips && along < 0;
+}
+
+// Derivative of t by gap, times D: of what pushes or is held, and of friction within or on the cone. Of what turns back
+// that of the straight line to where it is, which is stiffer than friction and ends the turning. `forces`: there is no
+// energy, which would see to that.
+static void slopes(brunt_boundary_patch *p, const double wanted[3], bool forces, double slope[9]) {
     memset(slope, 0, 9 * sizeof *slope);
     p->stiff[0] = !p->leaves || wanted[0] <= 0, p->stiff[1] = !p->rubs;
     if (p->stiff[0]) slope[0] = p->stiffness;
@@ -128,10 +138,11 @@ static void slopes(brunt_boundary_patch *p, const double wanted[3], double slope
     }
     const double size = size_of(wanted + 1, p->rows - 1), share = size > p->bound ? p->bound / size : p->bound > 0;
     p->stiff[1] = size <= p->bound && p->bound > 0;
+    const bool back = forces && turns_back(p, wanted, size > p->bound), straight = p->stiff[1] || size == 0 || back;
     for (int i = 1; i < p->rows; i++)
         for (int j = 1; j < p->rows; j++)
-            slope[3 * i + j] = p->stiffness * share *
-                               ((i == j) - (p->stiff[1] || size == 0 ? 0 : wanted[i] * wanted[j] / (size * size)));
+            slope[3 * i + j] =
+                p->stiffness * share * ((i == j) - (straight ? 0 : wanted[i] * wanted[j] / (size * size)));
 }
 
 static void add_patch_matrix(brunt_boundary_rows *r, int32_t patch, const double *u, brunt_block_matrix *h) {
@@ -141,7 +152,7 @@ static void add_patch_matrix(brunt_boundary_rows *r, int32_t patch, const double
     double moved[3], wanted[3], slope[9];
     rows_of(r, patch, u, moved);
     tentative(r, patch, moved, wanted);
-    slopes(p, wanted, slope);
+    slopes(p, wanted, r->forces, slope);
     memset(r->dense, 0, (size_t)(nodes * dim) * (size_t)(nodes * dim) * sizeof *r->dense);
     for (int k = 0; k < p->rows; k++)
         for (int l = 0; l < p->rows; l++) {
@@ -226,6 +237,12 @@ static double patch_sweep(brunt_boundary_rows *r, int32_t patch, const double *u
     return change;
 }
 
+// Where there is no energy that would have to fall, friction's bound follows the pressure within Newton's method once
+// that has found the places of the step; between its solutions alone it takes one for each third of what is off.
+static void bend(const brunt_boundary_rows *r, brunt_boundary_patch *p) {
+    if (r->bends && p->rubs) p->bound = p->surface->def.friction * fmax(0, -p->multiplier[0]);
+}
+
 static int rows_sweep(void *term, const double *u, const double *step, double *g, bool *changed, brunt_error *error) {
     brunt_boundary_rows *r = term;
     int32_t worst = -1;
@@ -243,6 +260,7 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         brunt_boundary_patch_traction(r, p, u, before, moved);
         patch_sweep(r, p, u, step, multiplier);
         memcpy(r->patch[p].multiplier, multiplier, sizeof multiplier);
+        bend(r, &r->patch[p]);
         brunt_boundary_patch_traction(r, p, u, after, moved);
         for (int k = 0; k < 3; k++) after[k] -= before[k];
         add_forces(r, p, after, g);
@@ -258,6 +276,7 @@ static void rows_follow(void *term, double share) {
     for (int32_t patch = 0; patch < r->patch_count; patch++) {
         brunt_boundary_patch *p = &r->patch[patch];
         for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->from[k] + share * (p->to[k] - p->from[k]);
+        bend(r, p);
     }
 }
 
@@ -278,6 +297,7 @@ static bool unsettled(const brunt_boundary_rows *r, const double *u) {
 
 bool brunt_boundary_rows_settle(brunt_boundary_rows *r, const double *u) {
     if (!unsettled(r, u)) return false;
+    r->bends = r->forces && !r->still;
     for (int32_t patch = 0; patch < r->patch_count; patch++) {
         brunt_boundary_patch *p = &r->patch[patch];
         double t[3], moved[3];
