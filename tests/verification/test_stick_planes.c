@@ -391,8 +391,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("stick_planes");
-    ADD_LOOP(hangs, HANGINGS * LIES);
-    ADD_LOOP(hangs_better_by_finer_cells, HANGINGS);
+    if (sizeof(real) == 8) { // the way is 3e-5 m; of places of 1 m single precision loses 6e-8 m in each step
+        ADD_LOOP(hangs, HANGINGS * LIES);
+        ADD_LOOP(hangs_better_by_finer_cells, HANGINGS);
+    }
     ADD_LOOP(in_a_corner_as_the_whole, 2 * LIES);
     ADD_LOOP(between_planes, 6);
     ADD_LOOP(meets, 2 * MEETINGS * LIES);
