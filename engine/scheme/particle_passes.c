@@ -131,7 +131,8 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
 
 int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_settings *s = &world->settings; // what particles keep of their own knows nothing of the images
-    if (s->apic > 0) return fold_kept(world, step->body, kept_of(&world->settings, step->body, step->dt), step->dt, error);
+    if (s->apic > 0)
+        return fold_kept(world, step->body, kept_of(&world->settings, step->body, step->dt), step->dt, error);
     fold_symmetry(&world->boundaries, step->body, s->transfer == BRUNT_FLIP ? 1 - s->flip : 1, true);
     return BRUNT_OK;
 }
