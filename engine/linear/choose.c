@@ -20,9 +20,9 @@ static bool of_splines(const brunt_linear_size *s) { return s->blocks > (s->dim 
 // Anal. 10).
 static double direct_seconds(const brunt_linear_size *s) {
     const double n = (double)s->nodes, b = s->blocks,
-                 fronts = s->dim == 2 ? 4.4e-3 * pow(n / 1e4, 1.5) * pow(b / 7, 1.85)
-                                      : 4.8e-2 * pow(n / 4096, 2) * pow(b / 13.5, 1.1);
-    return n * (1.9e-6 + 4.4e-8 * b) + fronts;
+                 fronts = s->dim == 2 ? 6.4e-3 * pow(n / 1e4, 1.5) * pow(b / 7, 1.85)
+                                      : 6.9e-2 * pow(n / 4096, 2) * pow(b / 13.5, 1.1);
+    return n * (2.1e-6 + 9.7e-8 * b) + fronts;
 }
 
 static double nodes_across(const brunt_linear_size *s) { return pow((double)s->nodes, 1. / s->dim); }
@@ -35,7 +35,7 @@ static double cells_across(const brunt_linear_size *s) { return 3 * nodes_across
 static double iterations(const brunt_linear_size *s) {
     static const struct {
         double of_waves, of_nodes;
-    } laws[2][2] = {{{1.9, 1.9}, {2.0, 2.9}}, {{0.82, 0.75}, {0.91, 1.5}}};
+    } laws[2][2] = {{{2.1, 1.8}, {2.4, 2.8}}, {{0.91, 0.75}, {1.1, 1.3}}};
     const bool splines = of_splines(s), space = s->dim == 3;
     const double by_waves = laws[splines][space].of_waves * s->courant,
                  by_nodes = laws[splines][space].of_nodes * nodes_across(s);
@@ -44,7 +44,7 @@ static double iterations(const brunt_linear_size *s) {
 
 static double pcg_seconds(const brunt_linear_size *s) {
     const double n = (double)s->nodes, b = s->blocks;
-    return n * (1.1e-8 * b + 3.4e-10 * b * b + (1.7e-8 + 3.4e-10 * b * s->dim * s->dim) * iterations(s));
+    return n * (1.0e-8 * b + 4.4e-10 * b * b + (1.8e-8 + 3.4e-10 * b * s->dim * s->dim) * iterations(s));
 }
 
 brunt_linear_choice brunt_linear_choose(const brunt_linear_size *s) {
