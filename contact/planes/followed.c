@@ -22,24 +22,25 @@ int32_t brunt_symmetry_before(const brunt_symmetry_plane *plane, const int32_t a
     return plane->side * (at[plane->axis] - plane->node);
 }
 
-bool brunt_followed_behind(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node) {
+// Whether a node is behind one of the planes (resting false), or on one that sticks.
+static bool any_holds(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node, bool resting) {
     brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
     const int count = planes_of(m, body, plane);
     int32_t at[3];
-    bool behind = false;
     brunt_node_coordinates(&body->grid, slot, node, at);
-    for (int k = 0; k < count; k++) behind = behind || brunt_symmetry_before(&plane[k], at) < 0;
-    return behind;
+    for (int k = 0; k < count; k++) {
+        const int32_t before = brunt_symmetry_before(&plane[k], at);
+        if (resting ? plane[k].sticks && before == 0 : before < 0) return true;
+    }
+    return false;
+}
+
+bool brunt_followed_behind(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node) {
+    return any_holds(m, body, slot, node, false);
 }
 
 bool brunt_followed_rests(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node) {
-    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
-    const int count = planes_of(m, body, plane);
-    int32_t at[3];
-    bool rests = false;
-    brunt_node_coordinates(&body->grid, slot, node, at);
-    for (int k = 0; k < count; k++) rests = rests || (plane[k].sticks && brunt_symmetry_before(&plane[k], at) == 0);
-    return rests;
+    return any_holds(m, body, slot, node, true);
 }
 
 void brunt_followers_find(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node,

@@ -21,7 +21,7 @@ typedef struct brunt_incomplete {
     int32_t *source, *twin;         // of upper ones: where in the matrix's row; of lower ones: where in the row above
     double *v, *d, *inverse, *size; // dim * dim each, D and its inverse of each node (block Jacobi: by node); S
     float *right, *left;            // V and its transpose, as a solution reads them
-    double *work;                   // a vector in the order of places
+    double *work;                   // a vector in the order of places, in 3D four numbers each, as they are read
     int32_t *slot;                  // of each worker and place: its place in the row under way + 1
     int32_t first[BRUNT_LEVELS * BRUNT_SLABS + 1]; // of level * slabs + slab: the place where the piece begins
     int slabs, levels;

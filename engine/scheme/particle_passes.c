@@ -61,10 +61,6 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static bool acts_on(const brunt_boundary *boundary, const brunt_body *body) {
-    return boundary->body < 0 || boundary->body == body->index;
-}
-
 // The symmetry planes that act on a body, and where what they bear is recorded.
 typedef struct acting_symmetry {
     brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
@@ -79,7 +75,7 @@ static void find_symmetry(brunt_boundaries *boundaries, const brunt_body *body, 
     for (int m = 0; m < boundaries->symmetry_count; m++) {
         const int w = boundaries->symmetry[m].boundary;
         brunt_boundary *boundary = w < 0 ? NULL : &boundaries->boundary[w];
-        if (boundary && !acts_on(boundary, body)) continue;
+        if (boundary && !brunt_boundary_acts_on(boundary, body->index)) continue;
         s->account[s->count] = boundary && accounted ? &boundary->last : &s->unbooked;
         s->plane[s->count++] = boundaries->symmetry[m];
     }

@@ -177,3 +177,16 @@ static inline void world_copy_state(brunt_world *from, brunt_world *to) {
     }
     ck_assert_msg(brunt_state_done(to, &error) == BRUNT_OK, "%s", error.message);
 }
+
+// Whether the last body of a definition, thrown at (1, 2), falls as gravity (3, -10) makes it.
+static inline void def_falls_freely(brunt_world_def *def) {
+    def->gravity[0] = 3, def->gravity[1] = -10;
+    def_velocity(&def->bodies[def->body_count - 1], 1, 2, 0);
+    brunt_world *w = world_take(def);
+    world_steps(w, 20);
+    const double t = brunt_world_time(w) - 0.5 * brunt_world_dt(w); // velocities are of the middle of the step
+    const brunt_body_sums s = world_sums(w, 0);
+    ck_assert_double_eq_tol(s.velocity[0], 1 + 3 * t, 10 * ROUNDING);
+    ck_assert_double_eq_tol(s.velocity[1], 2 - 10 * t, 10 * ROUNDING);
+    brunt_world_destroy(w);
+}
