@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "base/simd.h"
 #include "body/bodies.h"
 #include "body/fields.h"
 #include "body/points.h"
@@ -20,12 +21,26 @@ static brunt_audit sums(const brunt_body_ref *ref) { return brunt_body_audit(ref
 
 static brunt_point_energy energy(const brunt_body_ref *ref) { return brunt_body_energy(ref->mpm); }
 
+// Of slots [first, end) alone, without those that are padding, or that have left in the last step.
+static void bounds_of(const brunt_particles *p, const real *x, int64_t first, int64_t end, double *low, double *high) {
+    for (int64_t s = first; s < end; s++)
+        if (p->id[s] >= 0) *low = fmin(*low, (double)x[s]), *high = fmax(*high, (double)x[s]);
+}
+
+// Padding lies where another particle does.
 static void bounds(const brunt_body_ref *ref, double low[3], double high[3]) {
-    brunt_particles *p = &ref->mpm->particles;
-    real *const *x = brunt_field(p, BRUNT_FIELD_position);
-    for (int64_t s = 0; s < p->slots; s++)
-        for (int a = 0; p->id[s] >= 0 && a < p->dim; a++) // else padding, or left in the last step
-            low[a] = fmin(low[a], (double)x[a][s]), high[a] = fmax(high[a], (double)x[a][s]);
+    const brunt_particles *p = &ref->mpm->particles;
+    real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
+    const int64_t whole = p->holes ? 0 : p->slots / BRUNT_LANES * BRUNT_LANES;
+    for (int a = 0; a < p->dim; a++) {
+        lanes least = lanes_set(INFINITY), most = lanes_set(-INFINITY);
+        for (int64_t s = 0; s < whole; s += BRUNT_LANES) {
+            const lanes at = lanes_load(x[a] + s);
+            least = lanes_min(at, least), most = lanes_max(at, most);
+        }
+        low[a] = fmin(low[a], (double)lanes_min_of(least)), high[a] = fmax(high[a], (double)lanes_max_of(most));
+        bounds_of(p, x[a], whole, p->slots, &low[a], &high[a]);
+    }
 }
 
 static uint64_t hash(const brunt_body_ref *ref) {

@@ -1,81 +1,189 @@
+// Sums over particles, several at once. The drift they measure is near rounding itself: each sum keeps what its
+// additions round off (T. J. Dekker, Numer. Math. 18 (1971) 224; D. E. Knuth, The Art of Computer Programming
+// 2, 4.2.2).
 #include "mpm/audit.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "base/simd.h"
 #include "grid/bspline.h"
 
-// One serial pass in the order of the particles, summed in extended precision: the drift it measures is near rounding
-// itself.
-brunt_audit brunt_body_audit(brunt_body *body) { return brunt_slots_audit(body, NULL, body->particles.slots); }
+#ifdef BRUNT_FLOAT
+enum { WIDTH = BRUNT_LANES > 1 ? BRUNT_LANES / 2 : 1 };
+#else
+enum { WIDTH = BRUNT_LANES };
+#endif
+typedef double wide __attribute__((vector_size(WIDTH * sizeof(double))));
+
+// A sum and what was rounded off it.
+typedef struct exact_sum {
+    wide sum, rest;
+} exact_sum;
+
+BRUNT_INLINE void add(exact_sum *to, wide a) {
+    const wide sum = to->sum + a, part = sum - to->sum;
+    to->rest += (to->sum - (sum - part)) + (a - part);
+    to->sum = sum;
+}
+
+// Of all lanes, in their order.
+static double total(const exact_sum *of) {
+    double sum = 0, rest = 0;
+    for (int l = 0; l < WIDTH; l++) {
+        const double a = of->sum[l], more = sum + a, part = more - sum;
+        rest += ((sum - (more - part)) + (a - part)) + of->rest[l];
+        sum = more;
+    }
+    return sum + rest;
+}
+
+BRUNT_INLINE wide root(wide a) {
+    for (int l = 0; l < WIDTH; l++) a[l] = sqrt(a[l]);
+    return a;
+}
+
+typedef struct audit_sums {
+    exact_sum mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular;
+} audit_sums;
+
+// Where up to WIDTH particles are: all behind `first`, or one by one in `slots`.
+typedef struct group {
+    bool whole;
+    int64_t first;
+    const int64_t *slots;
+    int count;
+} group;
+
+typedef real narrow __attribute__((vector_size(WIDTH * sizeof(real)), aligned(sizeof(real)), may_alias));
+
+// What is not there has the first one's numbers, and no mass.
+BRUNT_INLINE wide read(const group *g, const real *from) {
+    if (g->whole) return __builtin_convertvector(*(const narrow *)(from + g->first), wide);
+    wide a = {0};
+    for (int l = 0; l < WIDTH; l++) a[l] = (double)from[g->slots[l < g->count ? l : 0]];
+    return a;
+}
+
+BRUNT_INLINE wide read_mass(const group *g, const real *mass) {
+    wide a = read(g, mass);
+    for (int l = g->count; l < WIDTH; l++) a[l] = 0;
+    return a;
+}
+
+// The second moment of the kernel about a particle along one axis [m^2]: of all alike, but for the linear one.
+BRUNT_INLINE wide read_moment(const group *g, const brunt_grid *grid, const real *place, double origin) {
+    const lanes any = bspline_moment(2, (lanes){0}, grid->h, grid->inv_h);
+    if (grid->order == 2) return (double)any[0] - (wide){0};
+    wide at = read(g, place);
+    for (int l = 0; l < WIDTH; l++)
+        at[l] = (double)bspline_moment(grid->order, lanes_set((real)at[l] - (real)origin), grid->h, grid->inv_h)[0];
+    return at;
+}
+
+// B = C D of the affine part, by row and column. The square of what it moves with [m^2/s^2].
+BRUNT_INLINE wide read_affine(const group *g, brunt_body *body, wide B[3][3]) {
+    brunt_particles *p = &body->particles;
+    const brunt_grid *grid = &body->grid;
+    real *const *C = brunt_field(p, BRUNT_FIELD_affine), *const *place = brunt_kernel_position(p);
+    wide square = {0};
+    for (int k = 0; k < p->dim; k++) {
+        const wide D = read_moment(g, grid, place[k], grid->origin[k]);
+        for (int r = 0; r < p->dim; r++) {
+            const wide c = read(g, C[r * p->dim + k]);
+            B[r][k] = c * D;
+            square += c * c * D;
+        }
+    }
+    return square;
+}
 
 // The affine part has the lever arms of the undeformed kernel; F takes them to where they are.
-static void deformed_spin(brunt_particles *p, int64_t s, double B[3][3]) {
+static void deform(const group *g, brunt_particles *p, wide B[3][3]) {
     real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
     for (int r = 0; r < p->dim; r++) {
-        double row[3] = {0};
+        wide row[3] = {{0}};
         for (int c = 0; c < p->dim; c++)
-            for (int k = 0; k < p->dim; k++) row[c] += B[r][k] * (double)F[c * p->dim + k][s];
+            for (int k = 0; k < p->dim; k++) row[c] += B[r][k] * read(g, F[c * p->dim + k]);
         memcpy(B[r], row, sizeof row);
     }
 }
 
-// `slots` NULL: all.
-brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t count) {
+BRUNT_INLINE void add_group(audit_sums *to, brunt_body *body, const group *g, int dim) {
     brunt_particles *p = &body->particles;
-    const int dim = p->dim;
-    const brunt_grid *grid = &body->grid;
     real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *v = brunt_field(p, BRUNT_FIELD_velocity);
-    real *const *C = brunt_field(p, BRUNT_FIELD_affine), *const *place = brunt_kernel_position(p);
-    const real *mass = brunt_field(p, BRUNT_FIELD_mass)[0];
-    const bool affine = p->field[BRUNT_FIELD_affine].components > 0, axisymmetric = brunt_axisymmetric(p);
-    long double total_mass = 0, kinetic = 0, linear[3] = {0}, angular[3] = {0}, centre[3] = {0}, scale_linear = 0,
-                scale_angular = 0;
-    for (int64_t n = 0; n < count; n++) {
-        const int64_t s = slots ? slots[n] : n;
-        if (p->id[s] < 0) continue;
-        double m = (double)mass[s], X[3] = {0}, V[3] = {0}, spin[3] = {0}, square = 0, B[3][3] = {{0}};
-        for (int k = 0; k < dim; k++) X[k] = (double)x[k][s], V[k] = (double)v[k][s], square += V[k] * V[k];
-        for (int k = 0; affine && k < dim; k++) {
-            double D = (double)bspline_moment(grid->order, lanes_set(place[k][s] - (real)grid->origin[k]), grid->h,
-                                              grid->inv_h)[0];
-            for (int r = 0; r < dim; r++) {
-                double c = (double)C[r * dim + k][s];
-                B[r][k] = c * D;
-                square += c * c * D;
-            }
-        }
-        if (brunt_total_lagrangian(p)) deformed_spin(p, s, B);
-        if (axisymmetric) { // the circle's sums; only sizes are left of what cancels
-            total_mass += m;
-            kinetic += 0.5 * m * square;
-            linear[1] += m * V[1];
-            centre[1] += m * X[1];
-            scale_linear += m * sqrt(square);
-            continue;
-        }
-        for (int k = 0; k < 3; k++) spin[k] = B[(k + 2) % 3][(k + 1) % 3] - B[(k + 1) % 3][(k + 2) % 3];
-        total_mass += m;
-        kinetic += 0.5 * m * square;
-        double size = 0;
-        for (int k = 0; k < 3; k++) {
-            int i = (k + 1) % 3, j = (k + 2) % 3;
-            linear[k] += m * V[k];
-            centre[k] += m * X[k];
-            angular[k] += m * (X[i] * V[j] - X[j] * V[i] + spin[k]);
-            size += X[k] * X[k];
-        }
-        scale_linear += m * sqrt(square);
-        scale_angular += m * sqrt(square * size);
+    const wide m = read_mass(g, brunt_field(p, BRUNT_FIELD_mass)[0]);
+    wide X[3] = {{0}}, V[3] = {{0}}, B[3][3] = {{{0}}}, square = {0}, size = {0};
+    for (int k = 0; k < dim; k++) X[k] = read(g, x[k]), V[k] = read(g, v[k]), square += V[k] * V[k];
+    if (p->field[BRUNT_FIELD_affine].components) square += read_affine(g, body, B);
+    if (brunt_total_lagrangian(p)) deform(g, p, B);
+    add(&to->mass, m);
+    add(&to->kinetic, 0.5 * m * square);
+    add(&to->scale_linear, m * root(square));
+    if (brunt_axisymmetric(p)) { // the circle's sums; only sizes are left of what cancels
+        add(&to->linear[1], m * V[1]);
+        add(&to->centre[1], m * X[1]);
+        return;
     }
-    brunt_audit a = {.mass = (double)total_mass,
-                     .kinetic = (double)kinetic,
-                     .scale_linear = (double)scale_linear,
-                     .scale_angular = (double)scale_angular};
+    for (int k = 0; k < dim; k++) {
+        add(&to->linear[k], m * V[k]);
+        add(&to->centre[k], m * X[k]);
+        size += X[k] * X[k];
+    }
+    for (int k = dim == 2 ? 2 : 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        add(&to->angular[k], m * (X[i] * V[j] - X[j] * V[i] + (B[j][i] - B[i][j])));
+    }
+    add(&to->scale_angular, m * root(square * size));
+}
+
+static brunt_audit read_sums(const audit_sums *sums) {
+    brunt_audit a = {.mass = total(&sums->mass),
+                     .kinetic = total(&sums->kinetic),
+                     .scale_linear = total(&sums->scale_linear),
+                     .scale_angular = total(&sums->scale_angular)};
     for (int k = 0; k < 3; k++) {
-        a.linear[k] = (double)linear[k];
-        a.angular[k] = (double)angular[k];
-        a.centre[k] = total_mass > 0 ? (double)(centre[k] / total_mass) : 0;
+        a.linear[k] = total(&sums->linear[k]);
+        a.angular[k] = total(&sums->angular[k]);
+        a.centre[k] = a.mass > 0 ? total(&sums->centre[k]) / a.mass : 0;
     }
     return a;
 }
+
+// The next particles, WIDTH of them while there are as many, from place `*n` on of `slots` (NULL: of all): whatever
+// padding lies between, they are the same together.
+BRUNT_INLINE group next_group(const brunt_particles *p, const int64_t *slots, int64_t count, int64_t *n,
+                              int64_t here[WIDTH]) {
+    group g = {.whole = !slots && *n + WIDTH <= count, .first = *n, .slots = here, .count = WIDTH};
+    for (int l = 0; g.whole && l < WIDTH; l++) g.whole = p->id[*n + l] >= 0;
+    if (g.whole) {
+        *n += WIDTH;
+        return g;
+    }
+    for (g.count = 0; g.count < WIDTH && *n < count; ++*n) {
+        const int64_t s = slots ? slots[*n] : *n;
+        if (p->id[s] >= 0) here[g.count++] = s; // else padding, or left in the last step
+    }
+    return g;
+}
+
+// `slots` NULL: the first ones.
+BRUNT_INLINE brunt_audit sum_slots(brunt_body *body, const int64_t *slots, int64_t count, int dim) {
+    audit_sums sums;
+    memset(&sums, 0, sizeof sums);
+    for (int64_t n = 0; n < count;) {
+        int64_t here[WIDTH];
+        const group g = next_group(&body->particles, slots, count, &n, here);
+        if (g.whole)
+            add_group(&sums, body, &(group){.whole = true, .first = g.first, .count = WIDTH}, dim);
+        else if (g.count)
+            add_group(&sums, body, &g, dim);
+    }
+    return read_sums(&sums);
+}
+
+brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t count) {
+    return body->particles.dim == 3 ? sum_slots(body, slots, count, 3) : sum_slots(body, slots, count, 2);
+}
+
+brunt_audit brunt_body_audit(brunt_body *body) { return brunt_slots_audit(body, NULL, body->particles.slots); }
