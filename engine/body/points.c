@@ -21,25 +21,22 @@ static brunt_audit sums(const brunt_body_ref *ref) { return brunt_body_audit(ref
 
 static brunt_point_energy energy(const brunt_body_ref *ref) { return brunt_body_energy(ref->mpm); }
 
-// Of slots [first, end) alone, without those that are padding, or that have left in the last step.
-static void bounds_of(const brunt_particles *p, const real *x, int64_t first, int64_t end, double *low, double *high) {
-    for (int64_t s = first; s < end; s++)
-        if (p->id[s] >= 0) *low = fmin(*low, (double)x[s]), *high = fmax(*high, (double)x[s]);
-}
-
-// Padding lies where another particle does.
 static void bounds(const brunt_body_ref *ref, double low[3], double high[3]) {
     const brunt_particles *p = &ref->mpm->particles;
     real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
-    const int64_t whole = p->holes ? 0 : p->slots / BRUNT_LANES * BRUNT_LANES;
+    const int64_t whole = p->slots / BRUNT_LANES * BRUNT_LANES;
     for (int a = 0; a < p->dim; a++) {
         lanes least = lanes_set(INFINITY), most = lanes_set(-INFINITY);
         for (int64_t s = 0; s < whole; s += BRUNT_LANES) {
+            lane_mask real_one = {0}; // else padding, or left in the last step
+            for (int l = 0; l < BRUNT_LANES; l++) real_one[l] = p->id[s + l] >= 0 ? -1 : 0;
             const lanes at = lanes_load(x[a] + s);
-            least = lanes_min(at, least), most = lanes_max(at, most);
+            least = lanes_min(lanes_select(real_one, at, least), least);
+            most = lanes_max(lanes_select(real_one, at, most), most);
         }
         low[a] = fmin(low[a], (double)lanes_min_of(least)), high[a] = fmax(high[a], (double)lanes_max_of(most));
-        bounds_of(p, x[a], whole, p->slots, &low[a], &high[a]);
+        for (int64_t s = whole; s < p->slots; s++)
+            if (p->id[s] >= 0) low[a] = fmin(low[a], (double)x[a][s]), high[a] = fmax(high[a], (double)x[a][s]);
     }
 }
 

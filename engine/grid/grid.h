@@ -39,7 +39,8 @@ enum {
 typedef struct brunt_block {
     int32_t coord[3];
     int32_t first,
-        count; // its particles: slots first .. first+count-1 of the particle arrays, first a multiple of BRUNT_LANES
+        count;    // its particles: slots first .. first+count-1 of the particle arrays, first a multiple of BRUNT_LANES
+    int32_t room; // slots up to the next block's first; those that are no particles have id -1, no mass and no volume
     int32_t slot[8]; // node slots at coord + corner (corner x slowest)
 } brunt_block;
 

@@ -1,9 +1,9 @@
 // The particles of one body: structure of arrays, made from one list of fields.
 //
 // One array per scalar component. Particles are sorted by grid block and, inside it, by bin. Every block starts at a
-// multiple of BRUNT_LANES; the gap behind its last particle is filled with copies of it that have no mass, no volume
-// and id -1, so that every loop runs over whole vectors. `count` is the number of real particles, `slots` of places
-// with gaps.
+// multiple of BRUNT_LANES; what is behind its last particle has no mass, no volume and id -1, and is a copy of it up to
+// the next multiple, so that every loop runs over whole vectors. `count` is the number of real particles, `slots` of
+// places with gaps, which have room for some that come.
 #pragma once
 
 #include <stdbool.h>
@@ -68,7 +68,8 @@ typedef struct brunt_particles {
                    // hoop's. Their masses and volumes are those of the full circle
     int64_t count, slots, capacity;
     int64_t made;         // how many there were at the start: ids are below it
-    int64_t sorts, moves; // sorts so far in this process, and those in which the arrays moved
+    int64_t sorts, moves; // sorts so far in this process, and those in which all arrays moved
+    int64_t moved;        // particles of the blocks that were sorted where they are in the others
     bool holes;           // some have left since the last sort: their slots have id -1, no mass and no volume
     int field_count;
     brunt_particle_field field[BRUNT_MAX_FIELDS];

@@ -1,6 +1,7 @@
-// Counting sort in three rounds: (1) each particle's block and bin, in ranges; new blocks are collected; (2) particles
-// to blocks, stable, ranges in order; (3) inside each block by bin, then every array is moved once. A step in which no
-// particle changes its bin stops after the first round.
+// Where particles are, and what follows: nothing where none has changed its bin, the blocks that it has changed in
+// while there are the same ones and they have room (sort_blocks.c), else all of them anew, by a counting sort: to
+// blocks, stable, ranges in order, then inside each block by bin, then every array is moved once. In a body that is
+// hit, and in one that flies, where rows of particles pass from block to block together, a fifth of the blocks change.
 #include "mpm/sort.h"
 
 #include <math.h>
@@ -13,59 +14,38 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "grid/background.h"
-
-enum { MISS_LIMIT = 1 << 16, BLOCK_GRAIN = 16 };
-
-// What one range of particles finds in the first round.
-typedef struct range {
-    int64_t begin, end;
-    int64_t bad; // slot of a particle that cannot be placed, -1
-    bool lost;   // there was no memory for one more that is missing
-    bool moved;  // some particle is not where the last sort put it
-    uint64_t *missing;
-    size_t missing_capacity;
-    int64_t missing_count;
-    int32_t *count;
-    size_t count_capacity; // particles per block, then the next place in it
-} range;
-
-// Kept from step to step, so that a step allocates nothing once the body has been everywhere.
-enum { MAX_RANGES = 64 };
-struct brunt_sort_workspace {
-    range ranges[MAX_RANGES];
-    int64_t *total;
-    size_t total_capacity;
-    uint64_t *keys;
-    size_t keys_capacity;
-};
+#include "mpm/sort_parts.h"
 
 void brunt_sort_workspace_free(brunt_sort_workspace *workspace) {
     if (!workspace) return;
-    for (int q = 0; q < MAX_RANGES; q++) {
+    for (int q = 0; q < SORT_RANGES; q++) {
         brunt_free(workspace->ranges[q].missing);
         brunt_free(workspace->ranges[q].count);
+        brunt_free(workspace->ranges[q].mover);
     }
     brunt_free(workspace->total);
     brunt_free(workspace->keys);
+    brunt_free(workspace->arrivals);
+    brunt_free(workspace->arrival);
+    brunt_free(workspace->changed);
+    brunt_free(workspace->carried);
+    brunt_free(workspace->carried_id);
+    brunt_free(workspace->old);
+    brunt_free(workspace->old_id);
     brunt_free(workspace);
 }
 
-typedef struct job {
-    brunt_grid *grid;
-    brunt_particles *particles;
-    range *ranges;
-    int range_count;
-    brunt_sort_workspace *workspace;
-    int threads;
-    brunt_timer *timer; // may be NULL
-    bool renewed;       // ranks of blocks are not those of the last sort: what it stored no longer compares
-    int group;          // scalars being moved: BRUNT_SORT_GROUP of them from here
-} job;
-
-static bool range_miss(range *r, uint64_t key) {
+static bool range_miss(sort_range *r, uint64_t key) {
     if (r->missing_count && r->missing[r->missing_count - 1] == key) return true;
     if (BRUNT_RESERVE(r->missing, (size_t)(r->missing_count + 1), (size_t)r->missing_count)) return false;
     r->missing[r->missing_count++] = key;
+    return true;
+}
+
+static bool range_mover(sort_range *r, int64_t slot, uint64_t from, uint64_t to) {
+    if (BRUNT_RESERVE(r->mover, (size_t)(r->mover_count + 1), (size_t)r->mover_count)) return false;
+    r->mover[r->mover_count++] =
+        (sort_mover){.slot = (int32_t)slot, .from = (int32_t)(from >> 6), .to = (int32_t)(to >> 6), .bin = to & 63};
     return true;
 }
 
@@ -94,14 +74,15 @@ static bool find_triangle(const brunt_grid *grid, real *const *x, int64_t s, int
     return true;
 }
 
-BRUNT_INLINE void find_places_of(job *j, range *r, bool mesh) {
+BRUNT_INLINE void find_places_of(sort_job *j, sort_range *r, bool mesh) {
     const brunt_grid *grid = j->grid;
     brunt_particles *p = j->particles;
     real *const *x = brunt_kernel_position(p);
     const real origin[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
     uint64_t last_key = UINT64_MAX;
     int32_t last = -1;
-    r->bad = -1, r->moved = r->lost = false, r->missing_count = 0;
+    uint8_t *changed = j->workspace->changed;
+    r->bad = -1, r->moved = r->lost = false, r->missing_count = r->mover_count = 0;
     for (int64_t s = r->begin; s < r->end; s++) {
         int32_t block[3];
         int bin;
@@ -117,16 +98,20 @@ BRUNT_INLINE void find_places_of(job *j, range *r, bool mesh) {
             r->moved = true;
             continue;
         }
-        uint64_t place = (uint64_t)last << 6 | (uint64_t)bin;
-        r->moved = r->moved || place != p->key[s];
+        const uint64_t place = (uint64_t)last << 6 | (uint64_t)bin, before = p->key[s];
+        if (place == before) continue;
+        r->moved = true;
         p->key[s] = place;
+        if (j->renewed) continue;
+        changed[before >> 6] = 1;
+        if (place >> 6 != before >> 6) r->lost = r->lost || !range_mover(r, s, before, place);
     }
 }
 
 // Round one. key[] gets block rank * 64 + bin; of a particle whose block is not alive yet, nothing.
 static void find_places(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    job *j = context;
+    sort_job *j = context;
     for (int64_t q = begin; q < end; q++)
         if (j->grid->mesh)
             find_places_of(j, &j->ranges[q], true);
@@ -141,10 +126,10 @@ static int compare_keys(const void *a, const void *b) {
 
 static void count_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    job *j = context;
+    sort_job *j = context;
     brunt_particles *p = j->particles;
     for (int64_t q = begin; q < end; q++) {
-        range *r = &j->ranges[q];
+        sort_range *r = &j->ranges[q];
         memset(r->count, 0, (size_t)j->grid->block_count * sizeof *r->count);
         for (int64_t s = r->begin; s < r->end; s++)
             if (p->id[s] >= 0) r->count[p->key[s] >> 6]++;
@@ -154,10 +139,10 @@ static void count_blocks(void *context, int64_t begin, int64_t end, int worker) 
 // Round two: the particles of each block in their old order.
 static void fill_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    job *j = context;
+    sort_job *j = context;
     brunt_particles *p = j->particles;
     for (int64_t q = begin; q < end; q++) {
-        range *r = &j->ranges[q];
+        sort_range *r = &j->ranges[q];
         for (int64_t s = r->begin; s < r->end; s++)
             if (p->id[s] >= 0) p->order[r->count[p->key[s] >> 6]++] = (int32_t)s;
     }
@@ -167,7 +152,7 @@ static void fill_blocks(void *context, int64_t begin, int64_t end, int worker) {
 // move.
 static void sort_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    job *j = context;
+    sort_job *j = context;
     brunt_particles *p = j->particles;
     for (int64_t b = begin; b < end; b++) {
         brunt_block *block = &j->grid->blocks[b];
@@ -179,8 +164,7 @@ static void sort_blocks(void *context, int64_t begin, int64_t end, int worker) {
         for (int k = 0; k < BRUNT_BLOCK_NODES; k++) start[k + 1] += start[k];
         memcpy(at, start, sizeof at);
         for (int32_t i = 0; i < block->count; i++) sorted[at[p->key[order[i]] & 63]++] = order[i];
-        int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-        for (int32_t i = 0; i < padded; i++) {
+        for (int32_t i = 0; i < block->room; i++) {
             order[i] = (int32_t)sorted[i < block->count ? i : block->count - 1];
             p->bin[block->first + i] = (uint8_t)(p->key[order[i]] & 63);
         }
@@ -189,7 +173,7 @@ static void sort_blocks(void *context, int64_t begin, int64_t end, int worker) {
 
 static void move_scalars(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    job *j = context;
+    sort_job *j = context;
     brunt_particles *p = j->particles;
     int first = j->group, last = first + BRUNT_SORT_GROUP;
     if (last > p->scalar_count) last = p->scalar_count;
@@ -201,25 +185,9 @@ static void move_scalars(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-static void move_ids(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    job *j = context;
-    brunt_particles *p = j->particles;
-    real *mass = brunt_field(p, BRUNT_FIELD_mass)[0], *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
-    for (int64_t b = begin; b < end; b++) {
-        const brunt_block *block = &j->grid->blocks[b];
-        int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-        for (int32_t i = 0; i < padded; i++) {
-            int64_t s = block->first + i;
-            p->spare_id[s] = i < block->count ? p->id[p->order[s]] : -1;
-            if (i >= block->count) mass[s] = volume[s] = 0;
-        }
-    }
-}
-
 static void set_keys(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    job *j = context;
+    sort_job *j = context;
     for (int64_t b = begin; b < end; b++) {
         const brunt_block *block = &j->grid->blocks[b];
         for (int32_t i = 0; i < block->count; i++)
@@ -243,7 +211,7 @@ static int fail_position(const brunt_grid *grid, const brunt_particles *p, int64
 }
 
 // United set of the blocks that are alive and needed: those with particles now, and the missing ones.
-static int renew_blocks(job *j, brunt_error *error) {
+static int renew_blocks(sort_job *j, brunt_error *error) {
     brunt_grid *grid = j->grid;
     int64_t most = j->renewed ? 0 : grid->block_count;
     for (int q = 0; q < j->range_count; q++) most += j->ranges[q].missing_count;
@@ -270,11 +238,11 @@ static int drop_empty(brunt_grid *grid, const int64_t *total, brunt_error *error
 }
 
 // Round one, for all ranges: whether some particle is not where the last sort put it, and whether some have no block.
-static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
+static int look(sort_job *j, bool *moved, bool *missing, brunt_error *error) {
     brunt_parallel(j->threads, j->range_count, 1, find_places, j, j->timer);
     *moved = j->particles->holes || j->renewed, *missing = false;
     for (int q = 0; q < j->range_count; q++) {
-        const range *r = &j->ranges[q];
+        const sort_range *r = &j->ranges[q];
         if (r->bad >= 0) return fail_position(j->grid, j->particles, r->bad, error);
         if (r->lost)
             return brunt_fail_memory(error, "blocks of the grid that particles come to", (size_t)r->missing_count + 1,
@@ -286,7 +254,7 @@ static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
 }
 
 // Particles of each block, by range and in all; whether there is one without any.
-static int count_particles(job *j, bool *empty, brunt_error *error) {
+static int count_particles(sort_job *j, bool *empty, brunt_error *error) {
     const int32_t blocks = j->grid->block_count;
     for (int q = 0; q < j->range_count; q++)
         if (BRUNT_CAPACITY(j->ranges[q].count, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
@@ -302,13 +270,16 @@ static int count_particles(job *j, bool *empty, brunt_error *error) {
 }
 
 // Until every particle's block is alive and every block has a particle: at most a few looks. *rests: no particle has
-// changed its bin, and nothing is to be done.
-static int settle_blocks(job *j, bool *rests, brunt_error *error) {
+// changed its bin, and nothing is to be done; *fits: those that have go where there is room.
+static int settle_blocks(sort_job *j, bool *rests, bool *fits, brunt_error *error) {
+    *fits = false;
     for (;;) {
         bool moved, missing, empty;
         if (look(j, &moved, &missing, error)) return BRUNT_FAILED;
         *rests = !moved;
         if (*rests) return BRUNT_OK;
+        if (!missing && !j->renewed && !j->particles->holes && sort_changes_count(j, fits, error)) return BRUNT_FAILED;
+        if (*fits) return BRUNT_OK;
         if (missing) {
             if (renew_blocks(j, error)) return BRUNT_FAILED;
         } else {
@@ -320,20 +291,45 @@ static int settle_blocks(job *j, bool *rests, brunt_error *error) {
     }
 }
 
+static void move_ids(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    sort_job *j = context;
+    brunt_particles *p = j->particles;
+    real *mass = brunt_field(p, BRUNT_FIELD_mass)[0], *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+    for (int64_t b = begin; b < end; b++) {
+        const brunt_block *block = &j->grid->blocks[b];
+        for (int32_t i = 0; i < block->room; i++) {
+            int64_t s = block->first + i;
+            p->spare_id[s] = i < block->count ? p->id[p->order[s]] : -1;
+            if (i >= block->count) mass[s] = volume[s] = 0;
+        }
+    }
+}
+
+// How many particles more than it has a block gets room for, when there is memory for it: those that come in a row.
+static int64_t extra_slots(const sort_job *j, int64_t count, int64_t spare) {
+    const int64_t wanted = brunt_padded(count + count / 8 + 1) - brunt_padded(count);
+    const int64_t share = spare / j->grid->block_count / BRUNT_LANES * BRUNT_LANES;
+    return wanted < share ? wanted : share;
+}
+
 // Where each block begins, and each range's part of it; how many slots there are with the gaps.
-static int64_t place_blocks(job *j) {
-    int64_t slots = 0;
+static int64_t place_blocks(sort_job *j) {
+    int64_t slots = 0, least = 0;
+    for (int32_t b = 0; b < j->grid->block_count; b++) least += brunt_padded(j->workspace->total[b]);
+    const int64_t spare = j->particles->capacity > least ? j->particles->capacity - least : 0;
     for (int32_t b = 0; b < j->grid->block_count; b++) {
         const int64_t count = j->workspace->total[b];
-        j->grid->blocks[b].first = (int32_t)slots;
-        j->grid->blocks[b].count = (int32_t)count;
+        brunt_block *block = &j->grid->blocks[b];
+        block->first = (int32_t)slots, block->count = (int32_t)count;
+        block->room = (int32_t)(brunt_padded(count) + extra_slots(j, count, spare));
         int32_t at = (int32_t)slots;
         for (int q = 0; q < j->range_count; q++) {
             int32_t here = j->ranges[q].count[b];
             j->ranges[q].count[b] = at;
             at += here;
         }
-        slots += (count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+        slots += block->room;
     }
     return slots;
 }
@@ -352,7 +348,7 @@ static int reserve_arrays(brunt_particles *p, int64_t slots, brunt_error *error)
 }
 
 // Every array to its new order, a few at a time through the spare ones.
-static void move_arrays(job *j, int64_t slots) {
+static void move_arrays(sort_job *j, int64_t slots) {
     brunt_particles *p = j->particles;
     for (int first = 0; first < p->scalar_count; first += BRUNT_SORT_GROUP) {
         j->group = first;
@@ -368,11 +364,9 @@ static void move_arrays(job *j, int64_t slots) {
     p->id = p->spare_id, p->spare_id = t;
 }
 
-static int sort_ranges(job *j, brunt_error *error) {
+// All particles to their places, as many blocks as there are.
+static int sort_all(sort_job *j, brunt_error *error) {
     brunt_particles *p = j->particles;
-    bool rests;
-    if (settle_blocks(j, &rests, error)) return BRUNT_FAILED;
-    if (rests) return BRUNT_OK;
     const int64_t slots = place_blocks(j);
     if (reserve_arrays(p, slots, error)) return BRUNT_FAILED;
     brunt_parallel(j->threads, j->range_count, 1, fill_blocks, j, j->timer);
@@ -385,23 +379,35 @@ static int sort_ranges(job *j, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// Ranges of whole blocks, so that what is noted of a block is noted by one of them; of slots before there are any.
+static void cut_ranges(sort_job *j) {
+    const brunt_particles *p = j->particles;
+    const int64_t blocks = j->grid->block_count, ranges = j->range_count;
+    for (int q = 0; q < ranges; q++) {
+        sort_range *r = &j->ranges[q];
+        r->begin = q ? j->ranges[q - 1].end : 0;
+        r->end = p->slots * (q + 1) / ranges;
+        if (!j->renewed && q + 1 < ranges) r->end = j->grid->blocks[blocks * (q + 1) / ranges].first;
+    }
+}
+
 int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, brunt_timer *timer, brunt_error *error) {
     int ranges = threads > 1 && particles->slots >= 4096 ? 4 * threads : 1;
-    if (ranges > MAX_RANGES) ranges = MAX_RANGES;
+    if (ranges > SORT_RANGES) ranges = SORT_RANGES;
     if (!particles->sort_workspace) particles->sort_workspace = brunt_alloc(sizeof *particles->sort_workspace);
     if (!particles->sort_workspace) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-    job j = {.grid = grid,
-             .particles = particles,
-             .workspace = particles->sort_workspace,
-             .ranges = particles->sort_workspace->ranges,
-             .range_count = ranges,
-             .threads = threads,
-             .timer = timer,
-             .renewed = grid->block_count == 0};
-    for (int q = 0; q < ranges; q++) {
-        j.ranges[q].begin = particles->slots * q / ranges;
-        j.ranges[q].end = particles->slots * (q + 1) / ranges;
-    }
+    sort_job j = {.grid = grid,
+                  .particles = particles,
+                  .workspace = particles->sort_workspace,
+                  .ranges = particles->sort_workspace->ranges,
+                  .range_count = ranges,
+                  .threads = threads,
+                  .timer = timer,
+                  .renewed = grid->block_count == 0};
+    cut_ranges(&j);
     particles->sorts++;
-    return sort_ranges(&j, error);
+    bool rests, fits;
+    if (sort_changes_clear(&j, error) || settle_blocks(&j, &rests, &fits, error)) return BRUNT_FAILED;
+    if (rests) return BRUNT_OK;
+    return fits ? sort_changed(&j, error) : sort_all(&j, error);
 }

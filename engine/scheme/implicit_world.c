@@ -100,6 +100,7 @@ double brunt_implicit_measure(void *context, const brunt_team *team, const doubl
         const brunt_particles *particles = &m->world->bodies.mpm[i].particles;
         brunt_mpm_interpolate(m->mpm[i], team, p, m->moved);
         for (int64_t s = 0; s < particles->slots; s++) {
+            if (particles->id[s] < 0) continue; // nothing is known there
             double square = 0;
             for (int a = 0; a < u->dim; a++) square += m->moved[s * u->dim + a] * m->moved[s * u->dim + a];
             if (!(square <= most)) most = square, *where = -2 - s;

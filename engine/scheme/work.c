@@ -178,7 +178,7 @@ static brunt_amount g2p_work(const brunt_settings *settings, const brunt_body *b
     return work;
 }
 
-// Each step looks where particles are; in those where one has changed its bin, all arrays move.
+// Each step looks where particles are; where they have changed their bins, arrays move: all, or those of the blocks.
 static brunt_amount sort_work(const brunt_body *body) {
     const brunt_particles *p = &body->particles;
     const double scalars = p->scalar_count, groups = ceil(scalars / BRUNT_SORT_GROUP);
@@ -188,8 +188,10 @@ static brunt_amount sort_work(const brunt_body *body) {
     move += 2 * order + key + 2 * id + 2 * bin;          // sort_blocks
     move += scalars * 3 * sizeof(real) + groups * order; // move_scalars: read, written elsewhere
     move += order + 3 * id + bin + 2 * key;              // move_ids, set_keys
-    const double share = p->sorts > 0 ? (double)p->moves / (double)p->sorts : 0;
-    return (brunt_amount){look + share * move, 3 * p->dim};
+    const double in_place = 2 * (key + order) + bin + key + 2 * (id + scalars * sizeof(real));
+    const double sorts = fmax(1, (double)p->sorts), share = (double)p->moves / sorts,
+                 blocks = (double)p->moved / (sorts * fmax(1, (double)p->count));
+    return (brunt_amount){look + share * move + blocks * in_place, 3 * p->dim};
 }
 
 // ------------------------------------------------------------------------------------------ nodes of grids
