@@ -223,24 +223,30 @@ static brunt_linear_status unsymmetric_factor(brunt_linear *s, const brunt_team 
     return vanished ? singular(d, d->id.n - vanished, error) : BRUNT_LINEAR_DONE;
 }
 
-static brunt_linear_status direct_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
-                                        brunt_error *error) {
+static brunt_linear_status direct_many(brunt_linear *s, const brunt_team *team, int count, double *x,
+                                       brunt_error *error) {
     (void)team;
     direct *d = s->self;
-    memcpy(x, b, (size_t)d->id.n * sizeof *x);
-    d->id.rhs = x, d->id.nrhs = 1, d->id.lrhs = d->id.n;
+    d->id.rhs = x, d->id.nrhs = count, d->id.lrhs = d->id.n;
     call(d, JOB_SOLVE);
     if (INFOG(d, 1) < 0) return explain(d, "solve with", error);
-    for (int i = 0; i < d->id.n; i++)
+    for (int64_t i = 0; i < (int64_t)count * d->id.n; i++)
         if (!isfinite(x[i])) {
             brunt_fail(error, BRUNT_FAILED, "The matrix is %s: unknown %d has no finite solution.",
-                       is_symmetric(d) ? "not positive definite" : "singular", i);
+                       is_symmetric(d) ? "not positive definite" : "singular", (int)(i % d->id.n));
             return is_symmetric(d) ? BRUNT_LINEAR_INDEFINITE : BRUNT_LINEAR_SINGULAR;
         }
     return BRUNT_LINEAR_DONE;
 }
 
-const brunt_linear_ops brunt_linear_direct = {"direct",      direct_make,  direct_analyse,
-                                              direct_factor, direct_solve, direct_free};
-const brunt_linear_ops brunt_linear_unsymmetric = {"unsymmetric",      unsymmetric_make, direct_analyse,
-                                                   unsymmetric_factor, direct_solve,     direct_free};
+static brunt_linear_status direct_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
+                                        brunt_error *error) {
+    const direct *d = s->self;
+    memcpy(x, b, (size_t)d->id.n * sizeof *x);
+    return direct_many(s, team, 1, x, error);
+}
+
+const brunt_linear_ops brunt_linear_direct = {"direct",     direct_make, direct_analyse, direct_factor,
+                                              direct_solve, direct_free, direct_many};
+const brunt_linear_ops brunt_linear_unsymmetric = {"unsymmetric", unsymmetric_make, direct_analyse, unsymmetric_factor,
+                                                   direct_solve,  direct_free,      direct_many};

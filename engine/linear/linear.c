@@ -50,3 +50,9 @@ brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, 
     BRUNT_ASSERT(s->ops);
     return s->ops->solve(s, team, b, x, error);
 }
+
+brunt_linear_status brunt_linear_solve_many(brunt_linear *s, const brunt_team *team, int count, double *x,
+                                            brunt_error *error) {
+    BRUNT_ASSERT(s->ops && s->ops->many);
+    return s->ops->many(s, team, count, x, error);
+}

@@ -60,6 +60,8 @@ typedef struct brunt_linear_ops {
     brunt_linear_status (*factor)(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a, brunt_error *e);
     brunt_linear_status (*solve)(brunt_linear *s, const brunt_team *team, const double *b, double *x, brunt_error *e);
     void (*free)(void *self);
+    // Several systems by the last factor, x with the right sides one after the other; NULL: it has none.
+    brunt_linear_status (*many)(brunt_linear *s, const brunt_team *team, int count, double *x, brunt_error *e);
 } brunt_linear_ops;
 
 struct brunt_linear {
@@ -86,6 +88,9 @@ brunt_linear_status brunt_linear_factor(brunt_linear *s, const brunt_team *team,
                                         brunt_error *error);
 brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
                                        brunt_error *error);
+// The same of several at once: x has right sides, then solutions. Of what has a factor.
+brunt_linear_status brunt_linear_solve_many(brunt_linear *s, const brunt_team *team, int count, double *x,
+                                            brunt_error *error);
 // What a choice goes by.
 typedef struct brunt_linear_size {
     int dim;

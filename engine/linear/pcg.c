@@ -144,4 +144,4 @@ static brunt_linear_status pcg_solve(brunt_linear *s, const brunt_team *team, co
     return BRUNT_LINEAR_DONE;
 }
 
-const brunt_linear_ops brunt_linear_pcg = {"pcg", pcg_make, pcg_analyse, pcg_factor, pcg_solve, pcg_free};
+const brunt_linear_ops brunt_linear_pcg = {"pcg", pcg_make, pcg_analyse, pcg_factor, pcg_solve, pcg_free, NULL};

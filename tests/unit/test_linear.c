@@ -640,6 +640,13 @@ START_TEST(solvers_serve_again) {
             ck_assert_int_eq(brunt_linear_solve(&s, &alone, b, x, NULL), BRUNT_LINEAR_DONE);
             brunt_block_matrix_product(a, &alone, x, y);
             ck_assert_double_lt(furthest(y, b, n), 1e-9);
+            if ((*ops)->many) { // the same right side in the midst of others
+                double *all = malloc((size_t)(3 * n) * sizeof *all);
+                for (int64_t i = 0; i < n; i++) all[i] = 1, all[n + i] = b[i], all[2 * n + i] = (double)(i % 7);
+                ck_assert_int_eq(brunt_linear_solve_many(&s, &alone, 3, all, NULL), BRUNT_LINEAR_DONE);
+                ck_assert_double_lt(furthest(all + n, x, n), 1e-12);
+                free(all);
+            }
             if (turn == 3) ck_assert_int_eq(memcmp(x, kept, (size_t)n * sizeof *x), 0);
             if (turn == 0)
                 kept = x;
