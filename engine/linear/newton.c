@@ -17,6 +17,7 @@ enum { HALVINGS = 60, FEW_HALVINGS = 12, MEMORY = 3 };
 #define MORE_SHIFT 100.0
 #define SHIFT_LIMIT 1e-2
 #define SPARE 1e-14 // of the diagonal, that a matrix may miss by rounding to be positive definite
+#define STUCK 0.5   // of the length two iterations ago
 #define EARLY 0.1   // of the tolerance, that the next step would be; of the last step, that this one is
 
 typedef struct newton_run {
@@ -221,16 +222,30 @@ static bool sweeps(const newton_run *r) {
     return false;
 }
 
+// Where the last factor takes the unknowns by forces, one set after the other.
+static int ways(void *context, int count, double *x) {
+    newton_run *r = context;
+    for (int k = 0; k < count; k++) gather(r, x + k * unknowns(r));
+    for (int64_t i = 0; i < count * unknowns(r); i++)
+        if (r->problem->held && r->problem->held[i % unknowns(r)]) x[i] = 0;
+    if (brunt_linear_solve_many(&r->n->linear, r->team, count, x, r->error) != BRUNT_LINEAR_DONE) return BRUNT_FAILED;
+    for (int k = 0; r->problem->fold && k < count; k++)
+        brunt_fold_spread(r->problem->fold, r->problem->dim, x + k * unknowns(r));
+    return BRUNT_OK;
+}
+
 // What terms keep beside u follows the step, and the step follows it, until neither changes. Energies are then others.
 static brunt_linear_status sweep(newton_run *r) {
     brunt_newton *n = r->n;
+    const brunt_response response = {r, ways};
     int outside;
     for (bool changed = true; changed;) {
         changed = false;
         for (int t = 0; t < r->problem->count; t++) {
             const brunt_term *term = r->problem->terms + t;
             if (!term->ops->sweep) continue;
-            r->endless = term->ops->sweep(term->self, r->u, n->step, n->gradient, &changed, r->error) != BRUNT_OK;
+            r->endless =
+                term->ops->sweep(term->self, r->u, n->step, n->gradient, &response, &changed, r->error) != BRUNT_OK;
             if (r->endless) return BRUNT_LINEAR_FAILED;
         }
         if (!changed) break;
@@ -240,7 +255,7 @@ static brunt_linear_status sweep(newton_run *r) {
         const brunt_linear_status status = solve_with_factor(r);
         if (status != BRUNT_LINEAR_DONE) return status;
     }
-    r->energy = energy_at(r, r->u, &outside);
+    if (!r->problem->forces) r->energy = energy_at(r, r->u, &outside);
     return BRUNT_LINEAR_DONE;
 }
 
@@ -256,8 +271,12 @@ static double measure_step(newton_run *r) {
     return report->step;
 }
 
-// Whether a step is so small that it ends the run; nothing is where forces say so.
-static bool small(const newton_run *r) { return !r->options->unbalance && r->report->step <= r->options->tolerance; }
+// Whether a step is so small that it ends the run; nothing is where forces say so. Without energies it may go to and
+// fro across a kink, as far each time: it is to be smaller.
+static bool small(const newton_run *r) {
+    const double share = r->problem->forces ? EARLY : 1;
+    return !r->options->unbalance && r->report->step <= share * r->options->tolerance;
+}
 
 // Whether the step may be taken: it leads downhill, or is so small that rounding has the say.
 static brunt_linear_status try_matrix(newton_run *r) {
@@ -266,9 +285,9 @@ static brunt_linear_status try_matrix(newton_run *r) {
         if (open_solver(r, &brunt_linear_direct)) return BRUNT_LINEAR_FAILED;
         status = solve(r);
     }
+    if (status == BRUNT_LINEAR_DONE && sweeps(r)) status = sweep(r);
     if (status == BRUNT_LINEAR_SINGULAR) return BRUNT_LINEAR_INDEFINITE;
     if (status != BRUNT_LINEAR_DONE) return status;
-    if (sweeps(r) && (status = sweep(r)) != BRUNT_LINEAR_DONE) return status;
     if (r->problem->forces) return status;
     r->slope = 0;
     for (int64_t i = 0; i < unknowns(r); i++) r->slope += r->n->gradient[i] * r->n->step[i];
@@ -349,11 +368,18 @@ static void follow_share(const newton_run *r, double share) {
         if (r->problem->terms[t].ops->follow) r->problem->terms[t].ops->follow(r->problem->terms[t].self, share);
 }
 
-// Halves the step until the gradient is shorter than the longest of the last ones: near a kink, where flow begins, it
-// may grow for once (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23).
+// What a gradient is to be shorter than: the longest of the last ones, since near a kink it may grow for once (Grippo,
+// Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23); of tractions, where two have not halved it, than it is.
+static double length_to_beat(const newton_run *r) {
+    const int now = r->report->iterations;
+    const double here = r->length[now % MEMORY];
+    if (sweeps(r) && now >= 2 && here > STUCK * r->length[(now - 2) % MEMORY]) return here;
+    return fmax(r->length[0], fmax(r->length[1], r->length[2]));
+}
+
+// Halves the step until the gradient is short enough.
 static int search_forces(newton_run *r, double *share) {
-    double longest = 0;
-    for (int k = 0; k < MEMORY; k++) longest = fmax(longest, r->length[k]);
+    const double longest = length_to_beat(r);
     for (int half = 0; half <= FEW_HALVINGS; half++, *share *= 0.5) {
         try_share(r, *share);
         follow_share(r, *share);
@@ -394,12 +420,13 @@ static int search(newton_run *r, double *share) {
 }
 
 // Whether the step that was taken is the last. Of quadratic convergence the next one is known: this one squared over
-// the one before, or as inexact as the linear solution.
+// the one before, or as inexact as the linear solution; near a kink it may not be, and this one has to be small too.
 static bool last_step(newton_run *r, double share) {
     const double step = r->report->step, before = r->before;
     const bool full = r->plain && share == 1;
     r->before = full ? step : 0;
     if (small(r)) return true;
+    if (r->problem->forces && step > r->options->tolerance) return false;
     if (!r->options->early || r->options->unbalance || !full || before <= 0 || step >= EARLY * before) return false;
     const double inexact = r->n->linear.ops != &brunt_linear_pcg ? 0 : r->options->accuracy;
     return fmax(step / before, inexact) * step <= EARLY * r->options->tolerance;

@@ -37,6 +37,13 @@ typedef struct brunt_stencils {
     int64_t version; // of a term: a number that changes whenever its sets do; 0: they may have changed
 } brunt_stencils;
 
+// What the last factor makes of forces: where it takes all unknowns by them, followers with their leaders; held ones
+// stay. x: sets of forces, one after the other; then ways. BRUNT_OK, or BRUNT_FAILED.
+typedef struct brunt_response {
+    void *context;
+    int (*ways)(void *context, int count, double *x);
+} brunt_response;
+
 // Functions that a term has not are NULL. `u` and `p` are of all unknowns, read by the term's own nodes.
 typedef struct brunt_term_ops {
     const char *name; // in messages: "barrier"
@@ -61,10 +68,12 @@ typedef struct brunt_term_ops {
     // NULL: any.
     double (*limit)(void *term, const brunt_team *team, const double *u, const double *p, double largest);
     // Once a step p has been found: what the term keeps beside u (the multipliers of constraints) as it is to be at
-    // u + p; the change of its gradient at u is added to g, and p is then found anew with the same factor. `changed`
+    // u + p; the change of its gradient at u is added to g, and p is then found anew with the same factor, whose
+    // `response` it may ask for. `changed`
     // becomes true unless that is as it is to be. BRUNT_OK, or BRUNT_FAILED: there is no end to it, with the reason.
     // NULL: it keeps nothing. The solver has to be exact.
-    int (*sweep)(void *term, const double *u, const double *p, double *g, bool *changed, brunt_error *error);
+    int (*sweep)(void *term, const double *u, const double *p, double *g, const brunt_response *response, bool *changed,
+                 brunt_error *error);
     // Where there is no energy, so that lengths of gradients are compared: it keeps what it is to have once a share of
     // the step that it was swept for has been gone. NULL: it keeps nothing.
     void (*follow)(void *term, double share);

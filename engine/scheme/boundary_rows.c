@@ -194,6 +194,10 @@ static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, bru
 // Room for the matrix of the largest patch.
 static int reserve_arrays(brunt_boundary_rows *rows, brunt_error *error) {
     int64_t most = 1;
+    rows->row_count = 0;
+    for (int32_t p = 0; p < rows->patch_count; p++)
+        rows->patch[p].row = rows->row_count, rows->row_count += rows->patch[p].rows;
+    rows->exact = rows->forces && !rows->still && rows->row_count <= BRUNT_BOUNDARY_ANSWER_LIMIT;
     for (int32_t p = 0; p < rows->patch_count; p++) {
         const int64_t nodes = rows->first[p + 1] - rows->first[p];
         if (nodes > most) most = nodes;
@@ -266,7 +270,7 @@ int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, cons
                              brunt_error *error) {
     const build b = {.world = world, .looks = true, .adds = true};
     rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
-    rows->dt = dt, rows->swept = 0, rows->bends = false;
+    rows->dt = dt, rows->swept = 0;
     if (BRUNT_CAPACITY(rows->first, 1, 0, "pieces of boundaries", error) ||
         BRUNT_CAPACITY(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error) || reserve_gaps(rows, error))
         return BRUNT_FAILED;
@@ -289,13 +293,14 @@ int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brun
 }
 
 void brunt_boundary_rows_free(brunt_boundary_rows *rows) {
-    void *const all[] = {rows->patch, rows->first, rows->node,   rows->weight,
-                         rows->mark,  rows->gap,   rows->bounds, rows->dense};
+    void *const all[] = {rows->patch, rows->first,  rows->node,  rows->weight, rows->mark,
+                         rows->gap,   rows->bounds, rows->dense, rows->answer};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *rows = (brunt_boundary_rows){.patch_count = 0};
 }
 
 size_t brunt_boundary_rows_bytes(const brunt_boundary_rows *rows) {
     return rows->patch_capacity + rows->first_capacity + rows->node_capacity + rows->weight_capacity +
-           rows->mark_capacity + rows->gap_capacity + rows->bounds_capacity + rows->dense_capacity;
+           rows->mark_capacity + rows->gap_capacity + rows->bounds_capacity + rows->dense_capacity +
+           rows->answer_capacity;
 }

@@ -22,9 +22,10 @@ typedef struct brunt_boundary_patch {
     double multiplier[3];          // l [Pa]
     double before[3];              // [Pa] of the end of the last step
     double bound;                  // [Pa] most friction
+    double before_bound;           // [Pa] ... at the start of the iteration
     double from[3], to[3];         // [Pa] l before the step of Newton's method that is made, and after the whole of it
     bool stiff[2];                 // whether the matrix has row 0, the others
-    double slid[2];                // [Pa] which way it slipped in the last matrix; 0: it did not
+    int row;                       // of its first, among those of all patches
 } brunt_boundary_patch;
 
 typedef struct brunt_boundary_rows {
@@ -45,7 +46,9 @@ typedef struct brunt_boundary_rows {
     double cell, dt; // [m], [s]
     bool still;      // load steps: no inertia
     bool forces;     // there is no energy
-    bool bends; // ... and bounds of friction follow pressures within Newton's method, after the step's first solution
+    bool exact;      // ... and all tractions follow within Newton's method, each by what it moves (boundary_answer.c)
+    int row_count;
+    double *answer;  // room for that
     int64_t reached; // boundary particles with a distance
     bool any_leave;  // surfaces that material may leave
     // One that material comes to from where no node of it is, one that it went through, NULL: none.
@@ -54,7 +57,7 @@ typedef struct brunt_boundary_rows {
     int64_t sweeps;                        // of the run
     int swept;                             // in the iteration under way
     size_t patch_capacity, first_capacity, node_capacity, weight_capacity, mark_capacity, gap_capacity, bounds_capacity,
-        dense_capacity;
+        dense_capacity, answer_capacity;
 } brunt_boundary_rows;
 
 extern const brunt_term_ops brunt_boundary_rows_ops;
@@ -81,6 +84,17 @@ bool brunt_boundary_rows_settle(brunt_boundary_rows *rows, const double *u);
 // t at u [Pa], C u - prescribed [m^3], of a patch.
 void brunt_boundary_patch_traction(const brunt_boundary_rows *rows, int32_t patch, const double *u, double t[3],
                                    double moved[3]);
+// C u along each row of a patch [m^3]. Adds C t.
+void brunt_boundary_patch_rows(const brunt_boundary_rows *rows, int32_t patch, const double *u, double out[3]);
+void brunt_boundary_patch_add(const brunt_boundary_rows *rows, int32_t patch, const double t[3], double *g);
+// t of what would be without cone or sign, taken to where it may be.
+void brunt_boundary_patch_admit(const brunt_boundary_patch *patch, double t[3]);
+// --- boundary_answer.c
+// Multipliers as they are to be after the step p from u. Adds what that changes of the forces at u to g. BRUNT_OK, or
+// BRUNT_FAILED: *worst finds no end, or (BRUNT_NONE) there is no answer of the factor, or no memory.
+enum { BRUNT_BOUNDARY_ANSWER_LIMIT = 2048 }; // rows: of more than that the matrix has those that hold, and follows
+int brunt_boundary_rows_answer(brunt_boundary_rows *rows, const double *u, const double *p, double *g,
+                               const brunt_response *response, int32_t *worst);
 // The forces of tractions t on the bodies, on node k of all [N].
 void brunt_boundary_patch_force(const brunt_boundary_rows *rows, int32_t patch, int64_t k, const double t[3],
                                 double F[3]);

@@ -16,7 +16,7 @@ static const double SAME_BOUND = 1e-6; // of the greatest: bounds of friction
 // ------------------------------------------------------------------------------------------ one patch
 
 // C u along each row [m^3].
-static void rows_of(const brunt_boundary_rows *r, int32_t patch, const double *u, double out[3]) {
+void brunt_boundary_patch_rows(const brunt_boundary_rows *r, int32_t patch, const double *u, double out[3]) {
     const int dim = r->unknowns->dim;
     for (int k = 0; k < 3; k++) out[k] = 0;
     for (int64_t e = r->first[patch]; e < r->first[patch + 1]; e++)
@@ -25,7 +25,7 @@ static void rows_of(const brunt_boundary_rows *r, int32_t patch, const double *u
 }
 
 // t of what would be without cone or sign, taken to where it may be.
-static void admit(const brunt_boundary_patch *p, double t[3]) {
+void brunt_boundary_patch_admit(const brunt_boundary_patch *p, double t[3]) {
     double change[2], friction[2] = {0, 0};
     if (p->leaves) t[0] = fmin(0, t[0]);
     if (!p->rubs) return;
@@ -42,9 +42,9 @@ static void tentative(const brunt_boundary_rows *r, int32_t patch, const double 
 
 void brunt_boundary_patch_traction(const brunt_boundary_rows *r, int32_t patch, const double *u, double t[3],
                                    double moved[3]) {
-    rows_of(r, patch, u, moved);
+    brunt_boundary_patch_rows(r, patch, u, moved);
     tentative(r, patch, moved, t);
-    admit(&r->patch[patch], t);
+    brunt_boundary_patch_admit(&r->patch[patch], t);
     for (int k = 0; k < r->patch[patch].rows; k++) moved[k] -= r->patch[patch].prescribed[k];
 }
 
@@ -68,10 +68,10 @@ static brunt_energy_sum patch_energy(const brunt_boundary_rows *r, int32_t patch
     const double factor = 0.5 * p->size / p->stiffness;
     brunt_energy_sum sum = {0};
     double moved[3], wanted[3], t[3];
-    rows_of(r, patch, u, moved);
+    brunt_boundary_patch_rows(r, patch, u, moved);
     tentative(r, patch, moved, wanted);
     memcpy(t, wanted, sizeof t);
-    admit(p, t);
+    brunt_boundary_patch_admit(p, t);
     for (int k = 0; k < p->rows; k++) {
         // Beyond the cone the energy goes on straight: t . (2 wanted - t).
         const double now = p->rubs && k > 0 ? t[k] * (2 * wanted[k] - t[k]) : t[k] * t[k],
@@ -95,7 +95,7 @@ static brunt_energy_sum rows_energy(void *term, const brunt_team *team, const do
 // ------------------------------------------------------------------------------------------ gradient and Hessian
 
 // Adds C t.
-static void add_forces(const brunt_boundary_rows *r, int32_t patch, const double t[3], double *g) {
+void brunt_boundary_patch_add(const brunt_boundary_rows *r, int32_t patch, const double t[3], double *g) {
     const int dim = r->unknowns->dim;
     for (int64_t e = r->first[patch]; e < r->first[patch + 1]; e++)
         for (int k = 0; k < r->patch[patch].rows; k++)
@@ -108,7 +108,7 @@ static void rows_gradient(void *term, const brunt_team *team, const double *u, d
     double t[3], moved[3];
     for (int32_t p = 0; p < r->patch_count; p++) {
         brunt_boundary_patch_traction(r, p, u, t, moved);
-        add_forces(r, p, t, g);
+        brunt_boundary_patch_add(r, p, t, g);
     }
 }
 
@@ -117,19 +117,13 @@ static brunt_stencils rows_stencils(void *term) {
     return (brunt_stencils){.count = r->patch_count, .first = r->first, .node = r->node, .version = r->version};
 }
 
-// Whether what slips has slipped the other way in the last matrix: with no stiffness along its way it goes to and fro
-// past where it sticks.
-static bool turns_back(brunt_boundary_patch *p, const double wanted[3], bool slips) {
-    const double along = p->slid[0] * wanted[1] + p->slid[1] * wanted[2];
-    for (int k = 0; k < 2; k++) p->slid[k] = slips ? wanted[1 + k] : 0;
-    return slips && along < 0;
-}
-
-// Derivative of t by gap, times D: of what pushes or is held, and of friction within or on the cone. Of what turns back
-// that of the straight line to where it is, which is stiffer than friction and ends the turning. `forces`: there is no
-// energy, which would see to that.
-static void slopes(brunt_boundary_patch *p, const double wanted[3], bool forces, double slope[9]) {
+// Derivative of t by gap, times D: of what pushes or is held, and of friction within or on the cone.
+static void slopes(const brunt_boundary_rows *r, brunt_boundary_patch *p, const double wanted[3], double slope[9]) {
     memset(slope, 0, 9 * sizeof *slope);
+    if (r->exact) { // A: of whatever b, nothing of what comes out depends on it
+        for (int k = 0; k < p->rows; k++) slope[4 * k] = p->stiffness;
+        return;
+    }
     p->stiff[0] = !p->leaves || wanted[0] <= 0, p->stiff[1] = !p->rubs;
     if (p->stiff[0]) slope[0] = p->stiffness;
     if (!p->rubs) {
@@ -138,7 +132,7 @@ static void slopes(brunt_boundary_patch *p, const double wanted[3], bool forces,
     }
     const double size = size_of(wanted + 1, p->rows - 1), share = size > p->bound ? p->bound / size : p->bound > 0;
     p->stiff[1] = size <= p->bound && p->bound > 0;
-    const bool back = forces && turns_back(p, wanted, size > p->bound), straight = p->stiff[1] || size == 0 || back;
+    const bool straight = p->stiff[1] || size == 0;
     for (int i = 1; i < p->rows; i++)
         for (int j = 1; j < p->rows; j++)
             slope[3 * i + j] =
@@ -150,9 +144,9 @@ static void add_patch_matrix(brunt_boundary_rows *r, int32_t patch, const double
     const int dim = r->unknowns->dim, nodes = (int)(r->first[patch + 1] - r->first[patch]);
     const double(*weight)[9] = (const double(*)[9])r->weight + r->first[patch];
     double moved[3], wanted[3], slope[9];
-    rows_of(r, patch, u, moved);
+    brunt_boundary_patch_rows(r, patch, u, moved);
     tentative(r, patch, moved, wanted);
-    slopes(p, wanted, r->forces, slope);
+    slopes(r, p, wanted, slope);
     memset(r->dense, 0, (size_t)(nodes * dim) * (size_t)(nodes * dim) * sizeof *r->dense);
     for (int k = 0; k < p->rows; k++)
         for (int l = 0; l < p->rows; l++) {
@@ -227,8 +221,8 @@ static int never_ends(const brunt_boundary_rows *r, int32_t patch, brunt_error *
 static double patch_sweep(brunt_boundary_rows *r, int32_t patch, const double *u, const double *step,
                           double multiplier[3]) {
     double here[3], there[3], moved[3], along[3];
-    rows_of(r, patch, u, moved);
-    rows_of(r, patch, step, along);
+    brunt_boundary_patch_rows(r, patch, u, moved);
+    brunt_boundary_patch_rows(r, patch, step, along);
     tentative(r, patch, moved, here);
     for (int k = 0; k < 3; k++) moved[k] += along[k];
     tentative(r, patch, moved, there);
@@ -237,14 +231,21 @@ static double patch_sweep(brunt_boundary_rows *r, int32_t patch, const double *u
     return change;
 }
 
-// Where there is no energy that would have to fall, friction's bound follows the pressure within Newton's method once
-// that has found the places of the step; between its solutions alone it takes one for each third of what is off.
-static void bend(const brunt_boundary_rows *r, brunt_boundary_patch *p) {
-    if (r->bends && p->rubs) p->bound = p->surface->def.friction * fmax(0, -p->multiplier[0]);
+static int answer(brunt_boundary_rows *r, const double *u, const double *step, double *g,
+                  const brunt_response *response, bool *changed, brunt_error *error) {
+    int32_t worst = -1;
+    if (r->swept || r->patch_count == 0) return BRUNT_OK;
+    if (brunt_boundary_rows_answer(r, u, step, g, response, &worst))
+        return worst < 0 ? BRUNT_FAILED : never_ends(r, worst, error);
+    r->sweeps++, r->swept++;
+    *changed = true;
+    return BRUNT_OK;
 }
 
-static int rows_sweep(void *term, const double *u, const double *step, double *g, bool *changed, brunt_error *error) {
+static int rows_sweep(void *term, const double *u, const double *step, double *g, const brunt_response *response,
+                      bool *changed, brunt_error *error) {
     brunt_boundary_rows *r = term;
+    if (r->exact) return answer(r, u, step, g, response, changed, error);
     int32_t worst = -1;
     double most = EVEN, multiplier[3];
     for (int32_t p = 0; p < r->patch_count; p++) {
@@ -260,10 +261,9 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         brunt_boundary_patch_traction(r, p, u, before, moved);
         patch_sweep(r, p, u, step, multiplier);
         memcpy(r->patch[p].multiplier, multiplier, sizeof multiplier);
-        bend(r, &r->patch[p]);
         brunt_boundary_patch_traction(r, p, u, after, moved);
         for (int k = 0; k < 3; k++) after[k] -= before[k];
-        add_forces(r, p, after, g);
+        brunt_boundary_patch_add(r, p, after, g);
     }
     r->sweeps++;
     r->swept++;
@@ -271,12 +271,13 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
     return BRUNT_OK;
 }
 
+// Friction's bound goes with the pressure where tractions are answers.
 static void rows_follow(void *term, double share) {
     const brunt_boundary_rows *r = term;
     for (int32_t patch = 0; patch < r->patch_count; patch++) {
         brunt_boundary_patch *p = &r->patch[patch];
         for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->from[k] + share * (p->to[k] - p->from[k]);
-        bend(r, p);
+        if (r->exact && p->rubs) p->bound = p->surface->def.friction * fmax(0, -p->multiplier[0]);
     }
 }
 
@@ -289,7 +290,9 @@ static bool unsettled(const brunt_boundary_rows *r, const double *u) {
         if (!p->leaves) continue;
         brunt_boundary_patch_traction(r, patch, u, t, moved);
         for (int k = 0; k < p->rows; k++) most = fmax(most, fabs(t[k] - p->multiplier[k]) / (p->stiffness * r->cell));
-        const double bound = p->rubs ? p->surface->def.friction * -t[0] : 0;
+        // Answers have their bounds by what they are; t has what is left of gaps as well, much of it in short steps.
+        const double pressure = r->exact ? -p->multiplier[0] : -t[0];
+        const double bound = p->rubs ? p->surface->def.friction * pressure : 0;
         bend = fmax(bend, fabs(bound - p->bound)), greatest = fmax(greatest, bound);
     }
     return most > SETTLED || bend > SAME_BOUND * greatest;
@@ -297,7 +300,6 @@ static bool unsettled(const brunt_boundary_rows *r, const double *u) {
 
 bool brunt_boundary_rows_settle(brunt_boundary_rows *r, const double *u) {
     if (!unsettled(r, u)) return false;
-    r->bends = r->forces && !r->still;
     for (int32_t patch = 0; patch < r->patch_count; patch++) {
         brunt_boundary_patch *p = &r->patch[patch];
         double t[3], moved[3];

@@ -163,22 +163,37 @@ static double energy_of(const struct brunt_implicit *m, const double *u) {
     return sum;
 }
 
+// Square of the length of the gradient, of what is free; by the room of `pull`, which is not under way.
+static double gradient_square(const struct brunt_implicit *m, const double *u) {
+    const brunt_fold *fold = brunt_unknowns_fold(&m->unknowns);
+    double *g = m->field.pull, square = 0;
+    brunt_implicit_gradient(m, 0, m->term_count, u, g);
+    if (fold) brunt_fold_gather(fold, m->unknowns.dim, g);
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) square += m->unknowns.held[k] ? 0 : g[k] * g[k];
+    return square;
+}
+
+// Whether a place is nearer to the end of the step than another: by energy, or by forces where there is none.
+static bool is_nearer(const struct brunt_implicit *m, const double *u, const double *other) {
+    return m->forces ? gradient_square(m, u) < gradient_square(m, other) : energy_of(m, u) < energy_of(m, other);
+}
+
 // Begins where held components are at their places and all others where their velocities take them, if nothing is in
-// the way and the energy there is less than with those others at rest, or held components cannot go there alone. What
+// the way and that is nearer to the end than with those others at rest, or held components cannot go there alone. What
 // slides on, or sticks to what is moved, then begins with its slip, not with that of all bodies at once.
 static int coast(struct brunt_implicit *m, brunt_error *error) {
     const brunt_fields *f = &m->field;
     const int64_t count = brunt_implicit_components(m);
     double way, part;
-    // Load steps have no velocities, what has no potential no energy, nor have tractions that are searched for.
-    if (m->still || m->forces || m->holds) return BRUNT_OK;
+    // Load steps have no velocities; tractions that are searched for have no energy.
+    if (m->still || (m->holds && !m->forces)) return BRUNT_OK;
     if (free_way(m, &way, error)) return BRUNT_FAILED;
     for (int64_t k = 0; k < count; k++)
         f->step[k] = m->unknowns.held[k] ? m->unknowns.target[k] : m->dt * m->unknowns.velocity[k];
     if (free_part(m, &part, error)) return BRUNT_FAILED;
     if (part < 1) return BRUNT_OK;
     for (int64_t k = 0; k < count; k++) f->gradient[k] = m->unknowns.held[k] ? m->unknowns.target[k] : 0;
-    if (way == 1 && !(energy_of(m, f->step) < energy_of(m, f->gradient))) return BRUNT_OK;
+    if (way == 1 && !is_nearer(m, f->step, f->gradient)) return BRUNT_OK;
     memcpy(f->u, f->step, (size_t)count * sizeof *f->u);
     return BRUNT_OK;
 }

@@ -281,8 +281,8 @@ START_TEST(collapses) {
            (double)n.steps, (double)n.cuts, (double)n.iterations / (double)n.steps, s.centre[0], s.centre[1],
            other.centre[0], other.centre[1], floor.impulse[1] / (s.mass * 9.81 * 0.15),
            -side * floor.impulse[0] / floor.impulse[1]);
-    ck_assert_double_le(n.cuts, 4);
-    ck_assert_double_le(n.iterations, 12.5 * n.steps); // 10; what slips to and fro and bounds that wait took 20
+    ck_assert_double_le(n.cuts, 0);
+    ck_assert_double_le(n.iterations, 5 * n.steps); // 3.7; guesses of what pushes, sticks and slips took 10 and 20
     ck_assert_double_le(fabs(s.centre[0] - other.centre[0]), 2e-3);
     ck_assert_double_le(fabs(s.centre[1] - other.centre[1]), 4e-3); // pieces hold their mean: the lowest row is lower
     ck_assert_double_gt(side * wall.impulse[0], 0);
