@@ -256,6 +256,28 @@ START_TEST(meets) {
 }
 END_TEST
 
+// Turned by half a turn it is the same: what meets at nodes before the plane is all there is, whichever nodes come
+// first. Nodes behind it that met as well moved what their images before it had been given.
+START_TEST(meets_the_other_way_round) {
+    const meeting which = (meeting)(_i % ON_A_THIN_ONE);
+    const int axis = _i / ON_A_THIN_ONE % 2;
+    double impulse[2], energy[2];
+    for (int k = 0; k < 2; k++) {
+        const lie *l = &lies[2 * axis + k];
+        brunt_world_def def = meeting_of(l, which, _i / ON_A_THIN_ONE / 2 ? 0.3 : 0, false);
+        brunt_world *world = world_take(&def);
+        world_steps(world, 100);
+        impulse[k] = l->side * world_pair(world, 0).impulse[1 - axis];
+        energy[k] = world_energy(world).error_relative;
+        brunt_world_destroy(world);
+    }
+    printf("  %s along %d: impulses differ by %.1e of %.4g, errors of energy %.2e by %.1e\n", meeting_names[which],
+           axis, fabs(impulse[1] - impulse[0]), impulse[0], energy[0], fabs(energy[1] - energy[0]));
+    ck_assert_double_le(fabs(impulse[1] - impulse[0]), 1e-10 * impulse[0]);
+    ck_assert_double_le(fabs(energy[1] - energy[0]), 1e-10);
+}
+END_TEST
+
 // Greatest velocity, beside the opposite one of its image, of a node before the plane of body a; *most: of any node.
 static double off_images(const brunt_world *world, double *most) {
     const brunt_symmetry_plane *p = &world->boundaries.symmetry[0];
@@ -401,6 +423,7 @@ int main(void) {
     ADD_LOOP(in_a_corner_as_the_whole, 2 * LIES);
     ADD_LOOP(between_planes, 6);
     ADD_LOOP(meets, 2 * MEETINGS * LIES);
+    if (sizeof(real) == 8) ADD_LOOP(meets_the_other_way_round, 4 * ON_A_THIN_ONE);
     ADD_LOOP(images_follow, 2 * MEETINGS * LIES);
     ADD_LOOP(as_against_symmetry, LIES);
     ADD_LOOP(nodes_hold, 4);
