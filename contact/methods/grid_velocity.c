@@ -82,8 +82,8 @@ typedef struct job {
     const brunt_contact_context *m;
     brunt_body *bodies; // of material points
     brunt_contact_workspace *w;
-    bool follows; // some planes have images that follow: the axis of rings, and such that stick
-    int bearers;  // accounts of a group besides those of pairs: of the symmetry planes, 0 where none sticks
+    bool follows;                 // there are symmetry planes: images follow
+    int bearers;                  // accounts of a group besides those of pairs: of those planes
     brunt_node_law *law[METHODS]; // of each method
 } job;
 
@@ -348,22 +348,34 @@ static member make_member(const job *j, brunt_body *body, const shared_slot *s, 
     return m;
 }
 
-// What a plane that sticks takes of a change of velocity from `old` at a node of it.
+// The planes near a node that some of the bodies there have images by.
+typedef struct bearers {
+    int count;
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    brunt_impulse_account *account[BRUNT_MAX_PLANES]; // of the group
+} bearers;
+
+// What planes take of a change of velocity from `old` at a node.
 static void bear(const brunt_grid *grid, const real *node, const int32_t at[3], const real old[3],
-                 brunt_impulse_account *bearer) {
-    double J[3] = {0}, x[3] = {0}, turn[3];
-    if (!bearer) return;
-    for (int a = 0; a < grid->dim; a++) {
-        x[a] = grid->origin[a] + (double)grid->h * at[a];
-        J[a] = (double)node[BRUNT_NODE_SPARE] * (double)(node[BRUNT_NODE_VELOCITY + a] - old[a]);
+                 const bearers *near) {
+    double x[3] = {0};
+    for (int a = 0; a < grid->dim; a++) x[a] = grid->origin[a] + (double)grid->h * at[a];
+    for (int a = 0; a < grid->dim && near->count; a++) {
+        const int i = (a + 1) % 3, k = (a + 2) % 3;
+        const double J = (double)node[BRUNT_NODE_SPARE] * (double)(node[BRUNT_NODE_VELOCITY + a] - old[a]);
+        double share[BRUNT_MAX_PLANES];
+        brunt_symmetry_shares(near->plane, near->count, at, a, share);
+        for (int m = 0; m < near->count; m++) {
+            double linear[3] = {0}, turn[3] = {0};
+            linear[a] = share[m] * J, turn[i] = share[m] * x[k] * J, turn[k] = -share[m] * x[i] * J;
+            brunt_impulse_account_reaction(near->account[m], linear, turn);
+        }
     }
-    for (int a = 0; a < 3; a++) turn[a] = x[(a + 1) % 3] * J[(a + 2) % 3] - x[(a + 2) % 3] * J[(a + 1) % 3];
-    brunt_impulse_account_reaction(bearer, J, turn);
 }
 
 // The node has what it was given even where it is held: the condition then takes it, and records it. Where it rests on
-// a plane nothing takes it. `bearer`: what takes all that the bodies get together there; NULL.
-static void scatter_node(const job *j, const member *m, int node, brunt_impulse_account *bearer) {
+// a plane nothing takes it. `near`: what takes all that the bodies get together there.
+static void scatter_node(const job *j, const member *m, int node, const bearers *near) {
     const brunt_grid *grid = &m->body->grid;
     int32_t at[3];
     real old[3] = {0};
@@ -374,13 +386,13 @@ static void scatter_node(const job *j, const member *m, int node, brunt_impulse_
     if (!j->follows) return;
     brunt_followers images;
     brunt_node_coordinates(grid, m->slot, node, at);
-    bear(grid, m->node, at, old, bearer);
+    bear(grid, m->node, at, old, near);
     brunt_followers_find(j->m, m->body, m->slot, node, &images);
     for (int i = 0; i < images.count; i++) {
         memcpy(old, images.node[i] + BRUNT_NODE_VELOCITY, (size_t)grid->dim * sizeof *old);
         for (int a = 0; a < grid->dim; a++)
             images.node[i][BRUNT_NODE_VELOCITY + a] = images.sign[i][a] * m->node[BRUNT_NODE_VELOCITY + a];
-        bear(grid, images.node[i], images.at[i], old, bearer);
+        bear(grid, images.node[i], images.at[i], old, near);
     }
 }
 
@@ -467,21 +479,27 @@ static void account_contact(const job *j, const group *g, int node, const double
         brunt_impulse_account_record(account, &account->friction_loss, friction_impulse, x, old, now, rest);
 }
 
-// Of the group the account of the first plane near the node that some of the bodies there sticks to; NULL: none is.
-static brunt_impulse_account *bearer_at(const job *j, const group *g, int node, const node_contacts *here) {
+// Whether some body at a node is near enough to a plane to have images by it.
+static bool any_follows(const job *j, const brunt_symmetry_plane *plane, int node, const node_contacts *here) {
+    bool any = false;
+    for (int i = 0; i < here->count; i++) {
+        const member *m = &here->members[i];
+        int32_t at[3];
+        brunt_node_coordinates(&m->body->grid, m->slot, node, at);
+        any = any || (brunt_boundary_acts_on(&j->m->boundaries[plane->boundary], m->body->index) &&
+                      brunt_symmetry_before(plane, at) <= m->body->grid.order);
+    }
+    return any;
+}
+
+static void find_bearers(const job *j, const group *g, int node, const node_contacts *here, bearers *near) {
+    near->count = 0;
     for (int k = 0; k < j->bearers; k++) {
         const brunt_symmetry_plane *plane = &j->m->symmetry[k];
-        if (!plane->sticks) continue;
-        for (int i = 0; i < here->count; i++) {
-            const member *m = &here->members[i];
-            int32_t at[3];
-            brunt_node_coordinates(&m->body->grid, m->slot, node, at);
-            if (brunt_boundary_acts_on(&j->m->boundaries[plane->boundary], m->body->index) &&
-                brunt_symmetry_before(plane, at) <= m->body->grid.order)
-                return &j->w->accounts[g->account + g->count * (g->count - 1) / 2 + k];
-        }
+        if (plane->boundary < 0 || !any_follows(j, plane, node, here)) continue;
+        near->account[near->count] = &j->w->accounts[g->account + g->count * (g->count - 1) / 2 + k];
+        near->plane[near->count++] = *plane;
     }
-    return NULL;
 }
 
 static void meet_at_node(const job *j, const group *g, int node, thread_work *thread) {
@@ -502,8 +520,9 @@ static void meet_at_node(const job *j, const group *g, int node, thread_work *th
     for (int q = 0; q < here.contact_count; q++)
         if (here.contacts[q].normal_impulse > 0 || here.contacts[q].law)
             account_contact(j, g, node, x, &here, &here.contacts[q]);
-    brunt_impulse_account *bearer = bearer_at(j, g, node, &here);
-    for (int i = 0; i < here.count; i++) scatter_node(j, &here.members[i], node, bearer);
+    bearers near;
+    find_bearers(j, g, node, &here, &near);
+    for (int i = 0; i < here.count; i++) scatter_node(j, &here.members[i], node, &near);
 }
 
 static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -525,10 +544,7 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
     if (make_threads(*workspace, m->threads, error)) return BRUNT_FAILED;
     job j = {.m = m, .bodies = m->mpm, .w = *workspace};
     for (int k = 0; k < METHODS; k++) j.law[k] = brunt_contact_node_law((brunt_contact_method)k);
-    for (int k = 0; k < m->symmetry_count; k++) {
-        j.follows = j.follows || m->symmetry[k].boundary < 0 || m->symmetry[k].sticks;
-        j.bearers = m->symmetry[k].sticks ? m->symmetry_count : j.bearers;
-    }
+    j.follows = m->symmetry_count > 0, j.bearers = m->symmetry_count;
     if (find_groups(&j, error)) return BRUNT_FAILED;
     for (int t = 0; t < m->threads; t++) j.w->thread[t].error.code = BRUNT_OK;
     brunt_parallel(m->threads, j.w->group_count, 1, meet_blocks, &j, m->timer);
@@ -543,7 +559,7 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
                 if (pair >= 0) brunt_impulse_account_add(&m->pairs[pair].last, &j.w->accounts[at]);
             }
         for (int k = 0; k < j.bearers; k++, at++)
-            if (m->symmetry[k].sticks)
+            if (m->symmetry[k].boundary >= 0)
                 brunt_impulse_account_add(&m->boundaries[m->symmetry[k].boundary].last, &j.w->accounts[at]);
     }
     return BRUNT_OK;

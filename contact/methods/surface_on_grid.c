@@ -1,5 +1,7 @@
 #include "contact/methods/surface_on_grid_parts.h"
 
+#include "contact/planes/followed.h"
+
 enum { GRAIN = 16, MORE_SWEEPS = 4 };
 
 void brunt_surface_on_grid_free(brunt_surface_on_grid *w) {
@@ -215,19 +217,18 @@ static void account_symmetry(const job *j, const contact *c, brunt_boundary *bou
         const link *l = &j->w->link[j->w->by_contact[i]];
         applied += l->own ? l->weight * j->m->surface->mass[l->surface] / c->mass : 0;
     }
-    brunt_symmetry_plane near[BRUNT_MAX_PLANES];
-    int near_count = 0;
-    for (int m = 0, count = brunt_symmetry_of(j->m, &j->m->mpm[c->mpm], near); m < count; m++) {
-        const double plane = grid->origin[near[m].axis] + (double)grid->h * near[m].node;
-        if (near[m].boundary >= 0 && fabs(c->x[near[m].axis] - plane) <= 2.5 * (double)grid->h)
-            near[near_count++] = near[m];
-    }
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    const int count = brunt_symmetry_of(j->m, &j->m->mpm[c->mpm], plane);
+    int32_t at[3];
+    brunt_node_coordinates(grid, c->slot, c->node, at);
     for (int a = 0; a < grid->dim; a++) {
-        const int bearer = brunt_symmetry_bearer(near, near_count, a);
-        double across[3] = {0};
-        if (bearer < 0) continue;
-        across[a] = (own - applied) * (c->normal_impulse * c->n[a] + c->friction_impulse[a]);
-        brunt_impulse_account_reaction(&boundaries[near[bearer].boundary].last, across, none);
+        double share[BRUNT_MAX_PLANES], across[3] = {0};
+        brunt_symmetry_shares(plane, count, at, a, share);
+        for (int m = 0; m < count; m++) {
+            if (!brunt_symmetry_carries(&plane[m], at, a) || plane[m].boundary < 0) continue;
+            across[a] = share[m] * (own - applied) * (c->normal_impulse * c->n[a] + c->friction_impulse[a]);
+            brunt_impulse_account_reaction(&boundaries[plane[m].boundary].last, across, none);
+        }
     }
 }
 

@@ -2,16 +2,6 @@
 
 #include <string.h>
 
-// The planes whose images follow that act on a body.
-static int planes_of(const brunt_contact_context *m, const brunt_body *body,
-                     brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
-    const int all = brunt_symmetry_of(m, body, out);
-    int count = 0;
-    for (int k = 0; k < all; k++)
-        if (out[k].boundary < 0 || out[k].sticks) out[count++] = out[k];
-    return count;
-}
-
 void brunt_node_coordinates(const brunt_grid *grid, int32_t slot, int node, int32_t at[3]) {
     int local[3];
     brunt_node_local(grid, node, local);
@@ -25,7 +15,7 @@ int32_t brunt_symmetry_before(const brunt_symmetry_plane *plane, const int32_t a
 // Whether a node is behind one of the planes (resting false), or on one that sticks.
 static bool any_holds(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node, bool resting) {
     brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
-    const int count = planes_of(m, body, plane);
+    const int count = brunt_symmetry_of(m, body, plane);
     int32_t at[3];
     brunt_node_coordinates(&body->grid, slot, node, at);
     for (int k = 0; k < count; k++) {
@@ -46,7 +36,7 @@ bool brunt_followed_rests(const brunt_contact_context *m, const brunt_body *body
 void brunt_followers_find(const brunt_contact_context *m, const brunt_body *body, int32_t slot, int node,
                           brunt_followers *out) {
     brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
-    const int count = planes_of(m, body, plane);
+    const int count = brunt_symmetry_of(m, body, plane);
     int32_t at[3], image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
     out->count = 0;

@@ -1,6 +1,6 @@
-// Planes whose images follow, the axis of rings and such that stick: nodes behind them see less of the bodies than
-// those before, or nothing, and contacts of their own would give two bodies, or the two sides, different impulses. So
-// bodies meet at the nodes before them, and the images follow.
+// Images at planes of symmetry, at such that slip or stick on lines of the grid, and at the axis of rings: nodes behind
+// them see less of the bodies than those before, or nothing, and contacts of their own would give two bodies, or the
+// two sides, different impulses. So bodies meet at the nodes before them, and the images follow.
 #pragma once
 
 #include "contact/planes/symmetry.h"

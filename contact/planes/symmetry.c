@@ -15,19 +15,69 @@
 // cubic kernel and a body that has sunk into the plane by less than a cell.
 enum { LAYERS = 2 };
 
-// Momentum that a pair of nodes carries for the body itself: before folding its own, afterwards its share of the common
+// ------------------------------------------------------------------------------------------ what each takes
+
+bool brunt_symmetry_carries(const brunt_symmetry_plane *plane, const int32_t at[3], int axis) {
+    return (plane->axis == axis || plane->sticks) && abs(at[plane->axis] - plane->node) <= LAYERS;
+}
+
+// How far a plane is from bearing what acts along an axis at a node, 0 the least: near ones that can, across it or as
+// they stick, before others; then by their distances; of as near ones those across it.
+static int32_t rank(const brunt_symmetry_plane *plane, const int32_t at[3], int axis) {
+    enum { FAR = 2, CLASS = 1 << 28 };
+    const int32_t distance = 2 * abs(at[plane->axis] - plane->node) + (plane->axis != axis);
+    const int class = brunt_symmetry_carries(plane, at, axis) ? 0 : distance > 2 * LAYERS + 1 ? FAR : 1;
+    return class * CLASS + (distance < CLASS ? distance : CLASS - 1);
+}
+
+void brunt_symmetry_shares(const brunt_symmetry_plane *symmetry, int symmetry_count, const int32_t at[3], int axis,
+                           double share[BRUNT_MAX_PLANES]) {
+    int32_t least = INT32_MAX;
+    int count = 0;
+    for (int m = 0; m < symmetry_count; m++) {
+        const int32_t has = rank(&symmetry[m], at, axis);
+        count = has < least ? 1 : count + (has == least);
+        least = has < least ? has : least;
+    }
+    for (int m = 0; m < symmetry_count; m++) share[m] = rank(&symmetry[m], at, axis) == least ? 1.0 / count : 0;
+}
+
+// What planes bear of the momentum of a body, and of its moment about the origin.
+typedef struct bearing {
+    const brunt_symmetry_plane *plane;
+    int count;
+    double taken;
+    double linear[BRUNT_MAX_PLANES][3], angular[BRUNT_MAX_PLANES][3];
+} bearing;
+
+static double own_share(const real *n) { return n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0; }
+
+// Momentum that a node carries for the body itself: before folding its own, afterwards its share of the common
 // velocity.
-static void sum_momentum(const real *n, const double x[3], int dim, double factor, double taken, double linear[3],
-                         double angular[3]) {
-    double p[3] = {0, 0, 0};
+static void own_momentum(const real *n, int dim, double taken, double p[3]) {
+    const double own = own_share(n);
     for (int a = 0; a < dim; a++)
-        p[a] = factor * (taken * (double)n[BRUNT_NODE_VELOCITY + a] + (double)n[BRUNT_NODE_OLD + a]);
-    for (int a = 0; a < 3; a++) {
-        int i = (a + 1) % 3, j = (a + 2) % 3;
-        linear[a] += p[a];
-        angular[a] += x[i] * p[j] - x[j] * p[i];
+        p[a] = own * (taken * (double)n[BRUNT_NODE_VELOCITY + a] + (double)n[BRUNT_NODE_OLD + a]);
+}
+
+// Books that the node at `at` carried `before`.
+static void bear(bearing *b, const brunt_grid *grid, const int32_t at[3], const real *n, const double before[3]) {
+    double x[3] = {0}, p[3] = {0};
+    own_momentum(n, grid->dim, b->taken, p);
+    for (int a = 0; a < grid->dim; a++) x[a] = grid->origin[a] + (double)grid->h * at[a], p[a] -= before[a];
+    for (int a = 0; a < grid->dim; a++) {
+        const int i = (a + 1) % 3, j = (a + 2) % 3;
+        double share[BRUNT_MAX_PLANES] = {1};
+        if (b->count > 1) brunt_symmetry_shares(b->plane, b->count, at, a, share);
+        for (int m = 0; m < b->count; m++) {
+            b->linear[m][a] += share[m] * p[a];
+            b->angular[m][i] += share[m] * x[j] * p[a];
+            b->angular[m][j] -= share[m] * x[i] * p[a];
+        }
     }
 }
+
+// ------------------------------------------------------------------------------------------ sums
 
 // What becomes of a node's real in its image.
 static real turned(const brunt_symmetry_plane *symmetry_plane, int dim, int r) {
@@ -38,11 +88,9 @@ static real turned(const brunt_symmetry_plane *symmetry_plane, int dim, int r) {
     return turns ? -1 : 1;
 }
 
-static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, double taken,
-                 brunt_impulse_account *account) {
+static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, bearing *b) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, axis = symmetry_plane->axis;
-    double before[3] = {0}, after[3] = {0}, turn_before[3] = {0}, turn_after[3] = {0};
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const brunt_slot *slot = &grid->slots[s];
         int32_t first = slot->coord[axis] * grid->side;
@@ -53,50 +101,40 @@ static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, d
             int depth = symmetry_plane->node - (first + local[axis]);
             if (depth < 0 || depth > LAYERS) continue;
             real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
-            int32_t at[3] = {0, 0, 0};
+            int32_t at[3] = {0, 0, 0}, to[3];
+            double before[3] = {0}, image_before[3] = {0};
             for (int a = 0; a < dim; a++) at[a] = slot->coord[a] * grid->side + local[a];
-            double x[3], y[3];
-            brunt_node_position(grid, slot->coord, node, x);
-            memcpy(y, x, sizeof y);
             if (depth == 0) {
-                sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, before,
-                             turn_before);
+                own_momentum(n, dim, b->taken, before);
                 for (int a = 0; a < dim; a++)
                     if (a == axis || symmetry_plane->sticks) n[BRUNT_NODE_VELOCITY + a] = n[BRUNT_NODE_OLD + a] = 0;
-                sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, after, turn_after);
+                bear(b, grid, at, n, before);
                 continue;
             }
-            at[axis] = symmetry_plane->node + depth;
-            y[axis] = grid->origin[axis] + (double)grid->h * at[axis];
-            real *m = brunt_grid_node(grid, at);
+            memcpy(to, at, sizeof to);
+            to[axis] = symmetry_plane->node + depth;
+            real *m = brunt_grid_node(grid, to);
             if (!m || (n[0] <= 0 && m[0] <= 0)) continue;
-            // The share of a node's own mass in what earlier symmetry planes have put there.
-            double own_n = n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0,
-                   own_m = m[0] > 0 ? (double)(m[BRUNT_NODE_SPARE] / m[0]) : 0;
-            sum_momentum(n, x, dim, own_n, taken, before, turn_before);
-            sum_momentum(m, y, dim, own_m, taken, before, turn_before);
+            own_momentum(n, dim, b->taken, before);
+            own_momentum(m, dim, b->taken, image_before);
             for (int r = 0; r < BRUNT_NODE_SPARE; r++) {
                 const real sign = turned(symmetry_plane, dim, r);
                 m[r] += sign * n[r];
                 n[r] = sign * m[r];
             }
-            sum_momentum(n, x, dim, (double)(n[BRUNT_NODE_SPARE] / n[0]), taken, after, turn_after);
-            sum_momentum(m, y, dim, (double)(m[BRUNT_NODE_SPARE] / m[0]), taken, after, turn_after);
+            bear(b, grid, at, n, before);
+            bear(b, grid, to, m, image_before);
         }
     }
-    for (int a = 0; a < 3; a++) after[a] -= before[a], turn_after[a] -= turn_before[a];
-    brunt_impulse_account_reaction(account, after, turn_after);
 }
 
 // ------------------------------------------------------------------------------------------ between two symmetry
 // planes
 
-static double own_share(const real *n) { return n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0; }
-
 // What a symmetry plane has added to a node goes on to the node's images by the other: that with the most mass has it
 // all.
 static void share_sums(const brunt_body *body, const brunt_symmetry_plane symmetry[2], const int32_t at[3],
-                       double taken, double sums[4][3]) {
+                       bearing *b) {
     const brunt_grid *grid = &body->grid;
     const int axis = symmetry[0].axis;
     int32_t image[BRUNT_MAX_IMAGES][3];
@@ -109,26 +147,23 @@ static void share_sums(const brunt_body *body, const brunt_symmetry_plane symmet
         if (node[i] && node[i][0] > node[from][0]) from = i;
     }
     for (int i = 0; i < count && node[from][0] > 0; i++) {
-        double x[3] = {0};
+        double before[3] = {0};
         if (!node[i]) continue;
-        for (int a = 0; a < grid->dim; a++) x[a] = grid->origin[a] + (double)grid->h * image[i][a];
-        sum_momentum(node[i], x, grid->dim, own_share(node[i]), taken, sums[0], sums[1]);
+        own_momentum(node[i], grid->dim, b->taken, before);
         for (int r = 0; r < BRUNT_NODE_SPARE && i != from; r++) node[i][r] = node[from][r];
         for (int a = 0; a < grid->dim; a++) {
             const real factor = i == from && sign[i][a] != 0 ? 1 : sign[i][a] * sign[from][a];
             node[i][BRUNT_NODE_VELOCITY + a] *= factor, node[i][BRUNT_NODE_OLD + a] *= factor;
         }
-        sum_momentum(node[i], x, grid->dim, own_share(node[i]), taken, sums[2], sums[3]);
+        bear(b, grid, image[i], node[i], before);
     }
 }
 
-static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[2], double taken,
-                          brunt_impulse_account *account) {
+static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[2], bearing *b) {
     const brunt_grid *grid = &body->grid;
     const int axis = symmetry[0].axis;
     const int32_t least = (symmetry[0].node < symmetry[1].node ? symmetry[0] : symmetry[1]).node - LAYERS,
                   most = (symmetry[0].node < symmetry[1].node ? symmetry[1] : symmetry[0]).node + LAYERS;
-    double sums[4][3] = {{0}}; // linear and angular, before and after
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const int32_t *coord = grid->slots[s].coord;
         if (coord[axis] * grid->side > most || (coord[axis] + 1) * grid->side <= least) continue;
@@ -137,41 +172,41 @@ static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[
             int32_t at[3] = {0};
             brunt_node_local(grid, node, local);
             for (int a = 0; a < grid->dim; a++) at[a] = coord[a] * grid->side + local[a];
-            if (at[axis] >= least && at[axis] <= most) share_sums(body, symmetry, at, taken, sums);
+            if (at[axis] >= least && at[axis] <= most) share_sums(body, symmetry, at, b);
         }
     }
-    for (int a = 0; a < 3; a++) sums[2][a] -= sums[0][a], sums[3][a] -= sums[1][a];
-    brunt_impulse_account_reaction(account, sums[2], sums[3]);
 }
 
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
                          brunt_impulse_account *const *account) {
+    bearing b = {.plane = symmetry, .count = symmetry_count, .taken = taken};
     for (int m = 0; m < symmetry_count; m++) {
-        fold(body, &symmetry[m], taken, account[m]);
+        fold(body, &symmetry[m], &b);
         for (int k = 0; k < m; k++) {
             const int32_t apart = symmetry[k].axis == symmetry[m].axis ? abs(symmetry[k].node - symmetry[m].node) : 0;
             if (apart > 0 && apart <= 2 * LAYERS)
-                share_between(body, (brunt_symmetry_plane[2]){symmetry[k], symmetry[m]}, taken, account[k]);
+                share_between(body, (brunt_symmetry_plane[2]){symmetry[k], symmetry[m]}, &b);
         }
     }
+    for (int m = 0; m < symmetry_count; m++) brunt_impulse_account_reaction(account[m], b.linear[m], b.angular[m]);
 }
 
 // ------------------------------------------------------------------------------------------ what moves on
 
-// The first of the planes that a slot has nodes near to, or BRUNT_NONE.
-static int plane_near(const brunt_grid *grid, const brunt_slot *slot, const brunt_symmetry_plane *symmetry, int count) {
+// Whether a slot has nodes near one of the planes.
+static bool near_any(const brunt_grid *grid, const brunt_slot *slot, const brunt_symmetry_plane *symmetry, int count) {
     for (int m = 0; m < count; m++) {
         const int first = slot->coord[symmetry[m].axis] * grid->side;
-        if (first <= symmetry[m].node + LAYERS && first + grid->side > symmetry[m].node - LAYERS) return m;
+        if (first <= symmetry[m].node + LAYERS && first + grid->side > symmetry[m].node - LAYERS) return true;
     }
-    return BRUNT_NONE;
+    return false;
 }
 
 void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
                              double *own) {
     const brunt_grid *grid = &body->grid;
     for (int32_t s = 0; s < grid->slot_count; s++) {
-        if (plane_near(grid, &grid->slots[s], symmetry, symmetry_count) < 0) continue;
+        if (!near_any(grid, &grid->slots[s], symmetry, symmetry_count)) continue;
         const real *n = brunt_slot_nodes(grid, s);
         double *to = own + (size_t)s * BRUNT_BLOCK_NODES * 3;
         for (int k = 0; k < BRUNT_BLOCK_NODES; k++, n += BRUNT_NODE_REALS, to += 3)
@@ -182,24 +217,45 @@ void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane 
 void brunt_symmetry_carry(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
                           const double *own, double reach, brunt_impulse_account *const *account) {
     const brunt_grid *grid = &body->grid;
+    double turn[BRUNT_MAX_PLANES][3] = {{0}};
     for (int32_t s = 0; s < grid->slot_count; s++) {
-        const int m = plane_near(grid, &grid->slots[s], symmetry, symmetry_count);
-        if (m < 0) continue;
+        if (!near_any(grid, &grid->slots[s], symmetry, symmetry_count)) continue;
         const real *n = brunt_slot_nodes(grid, s);
         const double *p = own + (size_t)s * BRUNT_BLOCK_NODES * 3;
-        double turn[3] = {0};
-        for (int k = 0; k < BRUNT_BLOCK_NODES; k++, n += BRUNT_NODE_REALS, p += 3)
-            for (int a = 0; a < 3 && n[BRUNT_NODE_MASS] > 0; a++) {
+        for (int k = 0; k < BRUNT_BLOCK_NODES; k++, n += BRUNT_NODE_REALS, p += 3) {
+            double share[BRUNT_MAX_PLANES];
+            int32_t at[3] = {0};
+            int local[3];
+            if (!(n[BRUNT_NODE_MASS] > 0)) continue;
+            brunt_node_local(grid, k, local);
+            for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[s].coord[a] * grid->side + local[a];
+            brunt_symmetry_shares(symmetry, symmetry_count, at, BRUNT_NONE, share);
+            for (int a = 0; a < 3; a++) {
                 const int i = (a + 1) % 3, j = (a + 2) % 3;
                 const double v[2] = {(double)(n[BRUNT_NODE_VELOCITY + i] / n[BRUNT_NODE_MASS]),
                                      (double)(n[BRUNT_NODE_VELOCITY + j] / n[BRUNT_NODE_MASS])};
-                turn[a] += reach * (v[0] * p[j] - v[1] * p[i]);
+                for (int m = 0; m < symmetry_count; m++) turn[m][a] += share[m] * reach * (v[0] * p[j] - v[1] * p[i]);
             }
-        brunt_impulse_account_reaction(account[m], (const double[3]){0, 0, 0}, turn);
+        }
     }
+    for (int m = 0; m < symmetry_count; m++)
+        brunt_impulse_account_reaction(account[m], (const double[3]){0, 0, 0}, turn[m]);
 }
 
 // ------------------------------------------------------------------------------------------ images
+
+int brunt_symmetry_distinct(brunt_symmetry_plane *symmetry, int symmetry_count) {
+    int count = 0;
+    for (int k = 0; k < symmetry_count; k++) {
+        const brunt_symmetry_plane plane = symmetry[k];
+        bool stuck = false; // those that stick are kept, before k and behind it
+        for (int m = 0; m < symmetry_count && !plane.sticks; m++)
+            stuck = stuck || ((m < count || m > k) && symmetry[m].sticks && symmetry[m].axis == plane.axis &&
+                              symmetry[m].node == plane.node);
+        if (!stuck) symmetry[count++] = plane;
+    }
+    return count;
+}
 
 int brunt_symmetry_of(const brunt_contact_context *m, const brunt_body *body,
                       brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
@@ -207,7 +263,7 @@ int brunt_symmetry_of(const brunt_contact_context *m, const brunt_body *body,
     for (int k = 0; k < m->symmetry_count; k++)
         if (m->symmetry[k].boundary < 0 || brunt_boundary_acts_on(&m->boundaries[m->symmetry[k].boundary], body->index))
             out[count++] = m->symmetry[k];
-    return count;
+    return brunt_symmetry_distinct(out, count);
 }
 
 int brunt_symmetry_bearer(const brunt_symmetry_plane *symmetry, int symmetry_count, int axis) {

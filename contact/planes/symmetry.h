@@ -30,9 +30,18 @@ void brunt_symmetry_remember(const brunt_body *body, const brunt_symmetry_plane 
 // Books that afterwards, `reach` = dt a [s], with the account of the plane that is near.
 void brunt_symmetry_carry(const brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count,
                           const double *own, double reach, brunt_impulse_account *const *account);
+// Of planes the number without those where another one sticks: such are more than they.
+int brunt_symmetry_distinct(brunt_symmetry_plane *symmetry, int symmetry_count);
 // The symmetry planes that act on a body, and their number.
 int brunt_symmetry_of(const brunt_contact_context *m, const brunt_body *body,
                       brunt_symmetry_plane out[BRUNT_MAX_PLANES]);
+// Whether a plane is near a node and can bear what acts on it along an axis: across it, or in all directions.
+bool brunt_symmetry_carries(const brunt_symmetry_plane *plane, const int32_t at[3], int axis);
+// What each of the planes near a node takes of what acts on it along an axis, 1 in all, whichever of them is given
+// first: the nearest one across it or that sticks, of as near ones that across it; where there is none (moments alone)
+// the nearest. As near ones take the same. `axis` BRUNT_NONE: across none.
+void brunt_symmetry_shares(const brunt_symmetry_plane *symmetry, int symmetry_count, const int32_t at[3], int axis,
+                           double share[BRUNT_MAX_PLANES]);
 // Which of them takes what acts along an axis: the first across it, else the first that sticks, BRUNT_NONE.
 int brunt_symmetry_bearer(const brunt_symmetry_plane *symmetry, int symmetry_count, int axis);
 // Images of a node coordinate under the symmetry planes it is near to (within the kernel), itself first, and the images

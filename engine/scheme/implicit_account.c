@@ -101,6 +101,22 @@ static void account_groups(brunt_world *world, double impulse, double work) {
 
 // ------------------------------------------------------------------------------------------ holders
 
+// Whether a component is held at rest by a plane of symmetry, or one that sticks and has images.
+static bool rests(const brunt_boundaries *boundaries, const brunt_unknowns *u, int64_t k) {
+    return boundaries->boundary[u->holder[k] - 1].symmetry_plane >= 0;
+}
+
+// A force of those planes, which do no work, in equal parts.
+static void bear(brunt_world *world, int64_t k, brunt_weighed_force *F) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_unknowns *u = &m->unknowns;
+    const brunt_boundaries *all = &world->boundaries;
+    F->impulse[k % u->dim] *= brunt_unknowns_bearers(u, k);
+    for (int p = 0; p < all->symmetry_count; p++)
+        if (u->images.bearers[k] >> p & 1)
+            brunt_implicit_account_force(m, &all->boundary[all->symmetry[p].boundary].last, (int32_t)(k / u->dim), F);
+}
+
 // What holders and symmetry planes gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but
 // loads at the end.
 static void account_holders(brunt_world *world) {
@@ -109,13 +125,19 @@ static void account_holders(brunt_world *world) {
     const brunt_fields *f = &m->field;
     const double gamma = m->weights.gamma, work = m->weights.work, *v = brunt_implicit_velocity(m);
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
-        if (!u->holder[k]) continue;
+        // What holds by images rests there.
+        const bool borne = u->images.any && u->images.bearers[k] && (!u->held[k] || rests(&world->boundaries, u, k));
+        if (!u->holder[k] && !borne) continue;
         const int a = (int)(k % u->dim);
         const double after = f->load[k] - f->gradient[k], before = work < 1 ? f->force_before[k] : 0;
         const double inertia = u->mass[k / u->dim] * (v[k] - u->velocity[k]) / m->dt;
         brunt_weighed_force F = {.work = {0}};
         F.impulse[a] = inertia - (1 - gamma) * before - gamma * after;
-        if (u->held[k]) F.work[a] = inertia - (1 - work) * before - work * after; // symmetry planes do none
+        if (borne) {
+            bear(world, k, &F);
+            continue;
+        }
+        F.work[a] = inertia - (1 - work) * before - work * after;
         brunt_implicit_account_force(m, &world->boundaries.boundary[u->holder[k] - 1].last, (int32_t)(k / u->dim), &F);
     }
 }

@@ -74,10 +74,13 @@ static void find_symmetry(brunt_boundaries *boundaries, const brunt_body *body, 
     s->count = 0;
     for (int m = 0; m < boundaries->symmetry_count; m++) {
         const int w = boundaries->symmetry[m].boundary;
-        brunt_boundary *boundary = w < 0 ? NULL : &boundaries->boundary[w];
-        if (boundary && !brunt_boundary_acts_on(boundary, body->index)) continue;
-        s->account[s->count] = boundary && accounted ? &boundary->last : &s->unbooked;
-        s->plane[s->count++] = boundaries->symmetry[m];
+        if (w < 0 || brunt_boundary_acts_on(&boundaries->boundary[w], body->index))
+            s->plane[s->count++] = boundaries->symmetry[m];
+    }
+    s->count = brunt_symmetry_distinct(s->plane, s->count);
+    for (int k = 0; k < s->count; k++) {
+        const int w = s->plane[k].boundary;
+        s->account[k] = w >= 0 && accounted ? &boundaries->boundary[w].last : &s->unbooked;
     }
 }
 

@@ -15,8 +15,8 @@ typedef struct brunt_images {
     brunt_fold fold;            // of `leader`, `follower`, `sign`
     int32_t *leader, *follower; // by node; `fold.count` of them
     double *sign, *mass; // of each component: 0 on its symmetry plane; [kg] with all images, 0 on its symmetry plane
-    int32_t *boundary;   // of each component: the symmetry plane that carries what images take, + 1; 0: none
-    size_t leader_capacity, follower_capacity, sign_capacity, mass_capacity, boundary_capacity;
+    uint32_t *bearers;   // of each component: the symmetry planes (bits) that carry what images take, in equal parts
+    size_t leader_capacity, follower_capacity, sign_capacity, mass_capacity, bearers_capacity;
 } brunt_images;
 
 // What the nodes bring into a step, `count` of them with `dim` components each.
@@ -38,7 +38,7 @@ typedef struct brunt_unknowns {
     size_t position_capacity, velocity_capacity;
     uint8_t *held; // of each component: whether it is given
     size_t held_capacity;
-    int32_t *holder; // of each component: the boundary that holds it, or whose images it has, + 1; 0: free
+    int32_t *holder; // of each component: the boundary that holds it, + 1; 0: none
     size_t holder_capacity;
     double *target, *end; // [m], [m/s] displacement of held components over the step, velocity at its end
     size_t target_capacity, end_capacity;
@@ -64,7 +64,9 @@ const brunt_fold *brunt_unknowns_fold(const brunt_unknowns *u);
 void brunt_unknowns_divide(brunt_unknowns *u, brunt_world *world);
 // [m/s^2] of all components that are not held, by forces [N] on the nodes.
 void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, double *acceleration);
-// What is held of a node is held of its images; what symmetry planes bear of others is theirs.
+// The part of what acts along component k that each of its bearers takes.
+double brunt_unknowns_bearers(const brunt_unknowns *u, int64_t k);
+// What is held of a node is held of its images.
 void brunt_unknowns_hold_images(brunt_unknowns *u);
 // --- unknowns_hold.c
 // What boundaries and groups hold over a step of `dt`: components and where they go. Clears what was held.

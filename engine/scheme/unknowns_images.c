@@ -27,38 +27,20 @@ static int symmetry_of(const brunt_unknowns *u, const brunt_world *world, int i,
         const bool all = end - k == world->bodies.mpm_count, one = k < end && u->tie[k] == u->tie[i];
         if (all || one) symmetry[count++] = *symmetry_plane;
     }
-    return count;
-}
-
-// Whether a plane that sticks is near to a node.
-static bool sticks_to(const brunt_symmetry_plane *plane, const int32_t at[3]) {
-    return plane->sticks && abs(plane->node - at[plane->axis]) <= LAYERS;
-}
-
-// The boundary that takes what acts along an axis of a node: one that sticks there, else the nearest symmetry plane
-// across it, of the first one where there is none across it; + 1.
-static int32_t bearer(const brunt_symmetry_plane *symmetry, int count, const int32_t at[3], int axis) {
-    int nearest = 0;
-    for (int m = 0; m < count; m++)
-        if (sticks_to(&symmetry[m], at)) return symmetry[m].boundary + 1;
-    for (int m = 1; m < count; m++) {
-        const bool across = symmetry[m].axis == axis;
-        if (across && (symmetry[nearest].axis != axis ||
-                       abs(symmetry[m].node - at[axis]) < abs(symmetry[nearest].node - at[axis])))
-            nearest = m;
-    }
-    return symmetry[nearest].boundary + 1;
+    return brunt_symmetry_distinct(symmetry, count);
 }
 
 // Node n at grid coordinates `at` of body i: whom it follows, with which signs.
-static void find_leader(brunt_unknowns *u, const brunt_bodies *bodies, int i, int32_t n, const int32_t at[3],
+static void find_leader(brunt_unknowns *u, const brunt_world *world, int i, int32_t n, const int32_t at[3],
                         const brunt_symmetry_plane *symmetry, int symmetry_count) {
+    const brunt_boundary *boundary = world->boundaries.boundary;
+    double share[BRUNT_MAX_PLANES];
     int32_t image[BRUNT_MAX_IMAGES][3], leader = n;
     real sign[BRUNT_MAX_IMAGES][3];
     const int count = brunt_symmetry_images(symmetry, symmetry_count, at, LAYERS, image, sign);
     int from = 0, others = 0;
     for (int k = 1; k < count; k++) {
-        const int32_t other = brunt_unknowns_node_at(u, bodies, i, image[k]);
+        const int32_t other = brunt_unknowns_node_at(u, &world->bodies, i, image[k]);
         others += other >= 0;
         if (other >= 0 && other < leader) leader = other, from = k;
     }
@@ -66,7 +48,10 @@ static void find_leader(brunt_unknowns *u, const brunt_bodies *bodies, int i, in
     for (int a = 0; a < u->dim; a++) {
         const int64_t k = n * (int64_t)u->dim + a;
         u->images.sign[k] = (double)sign[from][a];
-        if (others || sign[0][a] == 0) u->images.boundary[k] = bearer(symmetry, symmetry_count, at, a);
+        if (!others && sign[0][a] != 0) continue;
+        brunt_symmetry_shares(symmetry, symmetry_count, at, a, share);
+        for (int m = 0; m < symmetry_count; m++)
+            u->images.bearers[k] |= (uint32_t)(share[m] > 0) << boundary[symmetry[m].boundary].symmetry_plane;
     }
 }
 
@@ -80,7 +65,7 @@ static void find_leaders(brunt_unknowns *u, const brunt_world *world, int i) {
         if (u->number[i][q] < 0) continue;
         brunt_node_local(grid, (int)(q % BRUNT_BLOCK_NODES), local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[q / BRUNT_BLOCK_NODES].coord[a] * grid->side + local[a];
-        find_leader(u, &world->bodies, i, u->number[i][q], at, symmetry, count);
+        find_leader(u, world, i, u->number[i][q], at, symmetry, count);
     }
 }
 
@@ -101,10 +86,10 @@ int brunt_unknowns_symmetry(brunt_unknowns *u, const brunt_world *world, brunt_e
         BRUNT_CAPACITY(images->follower, n, 0, "images of nodes", error) ||
         BRUNT_CAPACITY(images->sign, all, 0, "images of nodes", error) ||
         BRUNT_CAPACITY(images->mass, all, 0, "images of nodes", error) ||
-        BRUNT_CAPACITY(images->boundary, all, 0, "images of nodes", error))
+        BRUNT_CAPACITY(images->bearers, all, 0, "images of nodes", error))
         return BRUNT_FAILED;
     memset(images->mass, 0, all * sizeof *images->mass);
-    memset(images->boundary, 0, all * sizeof *images->boundary);
+    memset(images->bearers, 0, all * sizeof *images->bearers);
     for (size_t k = 0; k < all; k++) images->sign[k] = 1;
     for (int32_t k = 0; k < u->count; k++) images->leader[k] = k;
     for (int i = 0; i < world->bodies.mpm_count; i++) find_leaders(u, world, i);
@@ -118,6 +103,12 @@ int brunt_unknowns_symmetry(brunt_unknowns *u, const brunt_world *world, brunt_e
 
 // ------------------------------------------------------------------------------------------ momenta and forces
 
+double brunt_unknowns_bearers(const brunt_unknowns *u, int64_t k) {
+    int count = 0;
+    for (uint32_t bits = u->images.bearers[k]; bits; bits &= bits - 1) count++;
+    return 1.0 / count;
+}
+
 // Sums over all images by their masses, for each of them.
 static void divide(const brunt_unknowns *u, int64_t first, double *sum) {
     const double *mass = u->images.any ? u->images.mass : NULL;
@@ -129,17 +120,21 @@ static void divide(const brunt_unknowns *u, int64_t first, double *sum) {
     if (mass) brunt_fold_spread(&u->images.fold, u->dim, sum);
 }
 
-// Adds momentum, `share` [kg] of each node's velocity (NULL: 1), to what symmetry planes bear, with a sign.
-static void bear(const brunt_unknowns *u, brunt_boundaries *boundaries, const double *share, double sign) {
+// Adds momentum, `mass` [kg] of each node's velocity (NULL: 1), to what symmetry planes bear, with a sign.
+static void bear(const brunt_unknowns *u, brunt_boundaries *boundaries, const double *mass, double sign) {
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
         double J[3] = {0}, turn[3] = {0}, x[3] = {0};
-        if (!u->images.boundary[k]) continue;
+        if (!u->images.bearers[k]) continue;
         const int32_t n = (int32_t)(k / u->dim);
         const int a = (int)(k % u->dim);
         for (int i = 0; i < u->dim; i++) x[i] = u->position[n * (int64_t)u->dim + i];
-        J[a] = sign * (share ? share[n] : 1) * u->velocity[k];
+        J[a] = sign * (mass ? mass[n] : 1) * u->velocity[k];
         for (int i = 0; i < 3; i++) turn[i] = x[(i + 1) % 3] * J[(i + 2) % 3] - x[(i + 2) % 3] * J[(i + 1) % 3];
-        brunt_impulse_account_reaction(&boundaries->boundary[u->images.boundary[k] - 1].last, J, turn);
+        const double share = brunt_unknowns_bearers(u, k);
+        for (int i = 0; i < 3; i++) J[i] *= share, turn[i] *= share;
+        for (int m = 0; m < boundaries->symmetry_count; m++)
+            if (u->images.bearers[k] >> m & 1)
+                brunt_impulse_account_reaction(&boundaries->boundary[boundaries->symmetry[m].boundary].last, J, turn);
     }
 }
 
@@ -181,6 +176,4 @@ void brunt_unknowns_hold_images(brunt_unknowns *u) {
                       to = images->leader[images->follower[i]] * (int64_t)u->dim;
         for (int a = 0; a < u->dim; a++) u->held[n + a] = u->held[to + a], u->holder[n + a] = u->holder[to + a];
     }
-    for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++)
-        if (!u->held[k]) u->holder[k] = images->boundary[k];
 }

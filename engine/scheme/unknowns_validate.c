@@ -30,7 +30,7 @@ static void validate_components(const brunt_unknowns *u, int boundaries) {
 }
 
 // A leader follows none; followers ascend.
-static void validate_images(const brunt_unknowns *u, int boundaries) {
+static void validate_images(const brunt_unknowns *u) {
     const brunt_images *images = &u->images;
     for (int32_t n = 0; n < u->count; n++) {
         const int32_t leader = images->leader[n];
@@ -41,8 +41,7 @@ static void validate_images(const brunt_unknowns *u, int boundaries) {
         BRUNT_ASSERT(n >= 0 && n < u->count && images->leader[n] != n && (!i || images->follower[i - 1] < n));
     }
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++)
-        BRUNT_ASSERT(fabs(images->sign[k]) <= 1 && images->mass[k] >= 0 && images->boundary[k] >= 0 &&
-                     images->boundary[k] <= boundaries);
+        BRUNT_ASSERT(fabs(images->sign[k]) <= 1 && images->mass[k] >= 0 && images->bearers[k] >> BRUNT_MAX_PLANES == 0);
 }
 
 void brunt_unknowns_validate(const brunt_unknowns *u, const brunt_bodies *bodies, int boundaries) {
@@ -52,5 +51,5 @@ void brunt_unknowns_validate(const brunt_unknowns *u, const brunt_bodies *bodies
     for (int w = 0; w < boundaries; w++)
         BRUNT_ASSERT(u->plane[w] == -1 || (u->plane[w] >= u->grid_base[bodies->mpm_count] && u->plane[w] < u->count));
     validate_components(u, boundaries);
-    if (u->images.any) validate_images(u, boundaries);
+    if (u->images.any) validate_images(u);
 }
