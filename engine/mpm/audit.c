@@ -67,7 +67,8 @@ BRUNT_INLINE wide read(const group *g, const real *from) {
 
 BRUNT_INLINE wide read_mass(const group *g, const real *mass) {
     wide a = read(g, mass);
-    for (int l = g->count; l < WIDTH; l++) a[l] = 0;
+    for (int l = 0; l < WIDTH; l++)
+        if (l >= g->count) a[l] = 0;
     return a;
 }
 
