@@ -9,6 +9,7 @@
 
 typedef struct brunt_boundary_kind brunt_boundary_kind;
 typedef struct brunt_boundary_lists brunt_boundary_lists; // planes/boundary_lists.h
+typedef struct brunt_held_grid brunt_held_grid;           // planes/grid_conditions.h
 typedef struct brunt_node_to_facet brunt_node_to_facet;   // search/node_to_facet.h
 typedef struct brunt_particle_dofs brunt_particle_dofs;   // search/particle_dof.h
 
@@ -76,7 +77,7 @@ struct brunt_boundary_kind {
     // Of what moves by itself [m/s].
     const double *(*velocity)(const brunt_boundary *b);
     // Gives velocities to nodes of the grid of a body of material points.
-    void (*hold_grid)(brunt_body *body, brunt_boundary *b, double time);
+    void (*hold_grid)(const brunt_held_grid *g, brunt_boundary *b, double time);
     // Implicit steps: the components (bits) of a node at x (within `tolerance` [m]) that it holds, and their velocity.
     unsigned (*hold_at)(const brunt_boundary *b, int dim, double time, const double x[3], double tolerance,
                         double v[3]);

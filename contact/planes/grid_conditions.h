@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/planes/boundary.h"
+#include "contact/planes/symmetry.h"
 #include "mpm/mpm_body.h"
 
 // Of a cell: what a node may stand off a plane or a shape that it is meant to lie in. Places of nodes are rounded by as
@@ -14,6 +15,15 @@ int brunt_condition_clear(brunt_body *body, brunt_error *error);
 // Nodes beyond the axis of rings are the images of those before it: they get what those get, mirrored. On the axis
 // there is no radial velocity.
 void brunt_condition_reflect(bool axisymmetric, const double position[3], double h, double now[3]);
+// The grid of a body that conditions hold, and the planes that it has images by. Conditions hold what is before those:
+// nodes on one keep no velocity across it, none at all where it sticks, and images follow. What moves a node moves its
+// images, and all their momentum as if it were there; the planes bear what it is more or less of, each in its account.
+struct brunt_held_grid {
+    brunt_body *body;
+    const brunt_symmetry_plane *symmetry; // without the axis of rings
+    int symmetry_count;
+    brunt_impulse_account *const *account; // of each
+};
 // Gives a node its velocity, holds components of it (bits), and records what moves at `rest`.
-void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, const double now[3], const double rest[3],
+void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double now[3], const double rest[3],
                           unsigned held, brunt_impulse_account *account);

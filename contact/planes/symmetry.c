@@ -11,9 +11,7 @@
 
 #include "contact/planes/boundary.h"
 
-// Nodes further than the kernel reaches from the plane have no partner with mass on the other side; two layers cover a
-// cubic kernel and a body that has sunk into the plane by less than a cell.
-enum { LAYERS = 2 };
+enum { LAYERS = BRUNT_IMAGE_LAYERS };
 
 // ------------------------------------------------------------------------------------------ what each takes
 

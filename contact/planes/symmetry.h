@@ -16,6 +16,9 @@ typedef struct brunt_symmetry_plane {
 } brunt_symmetry_plane;
 
 enum { BRUNT_MAX_PLANES = 16 }; // of a world
+// Nodes further than the kernel reaches from the plane have no partner with mass on the other side; two layers cover a
+// cubic kernel and a body that has sunk into the plane by less than a cell.
+enum { BRUNT_IMAGE_LAYERS = 2 };
 
 // Adds up the sums of every node and its images by the symmetry planes that act on a body, each with its account.
 // `taken`: the share of the grid's velocity that particles take over, 1 where they keep nothing of their own; the rest

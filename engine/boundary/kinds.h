@@ -60,7 +60,7 @@ int brunt_listed_check(const brunt_world_def *def, const void *one, int32_t w, b
 // Every entry is of a kind that there is.
 int brunt_listed_kinds_check(const brunt_world_def *def, brunt_error *error);
 int brunt_listed_make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error);
-void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *boundary, double time);
+void brunt_listed_hold_grid(const brunt_held_grid *g, brunt_boundary *boundary, double time);
 #define BRUNT_LISTED_ROW(key, text, list)                                                                              \
     .word = key, .doc = text, .keys = list, .key_count = sizeof(list) / sizeof *(list), .count = brunt_listed_count,   \
     .next = brunt_listed_next, .name = brunt_listed_name, .body = brunt_listed_body, .free = brunt_listed_free,        \

@@ -103,7 +103,8 @@ int brunt_listed_make(const brunt_boundary_making *m, const void *one, int w, br
     return BRUNT_OK;
 }
 
-void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
+void brunt_listed_hold_grid(const brunt_held_grid *g, brunt_boundary *boundary, double time) {
+    brunt_body *body = g->body;
     const bool axisymmetric = brunt_axisymmetric(&body->particles);
     const brunt_grid *grid = &body->grid;
     for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
@@ -122,6 +123,6 @@ void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *boundary, double t
             now[a] = held >> a & 1 ? v[a] : (double)n[BRUNT_NODE_VELOCITY + a];
         }
         if (held & 1) brunt_condition_reflect(axisymmetric, place, (double)grid->h, now);
-        if (held) brunt_condition_hold(body, slot, node, now, rest, held, &boundary->last);
+        if (held) brunt_condition_hold(g, slot, node, now, rest, held, &boundary->last);
     }
 }

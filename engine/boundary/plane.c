@@ -148,7 +148,8 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
 static const double *velocity(const brunt_boundary *b) { return b->plane.velocity; }
 
 // Of a total-Lagrangian body the plane lies in the undeformed configuration and holds what was behind it at the start.
-static void hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
+static void hold_grid(const brunt_held_grid *g, brunt_boundary *boundary, double time) {
+    brunt_body *body = g->body;
     if (boundary->symmetry_plane >= 0 || !brunt_boundary_holds(boundary)) return;
     const bool axisymmetric = brunt_axisymmetric(&body->particles);
     const brunt_grid *grid = &body->grid;
@@ -184,7 +185,7 @@ static void hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
             for (int a = 0; a < grid->dim; a++)
                 now[a] = sticks ? plane->velocity[a] : v[a] - approach * plane->normal[a];
             brunt_condition_reflect(axisymmetric, x, (double)grid->h, now);
-            brunt_condition_hold(body, slot, node, now, plane->velocity, held, &boundary->last);
+            brunt_condition_hold(g, slot, node, now, plane->velocity, held, &boundary->last);
         }
     }
 }

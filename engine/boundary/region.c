@@ -55,7 +55,8 @@ static void unplace(const brunt_placement *place, const double x[3], double out[
     }
 }
 
-static void hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
+static void hold_grid(const brunt_held_grid *g, brunt_boundary *boundary, double time) {
+    brunt_body *body = g->body;
     if (!acts_at(boundary, time)) return;
     const bool axisymmetric = brunt_axisymmetric(&body->particles);
     const brunt_grid *grid = &body->grid;
@@ -86,7 +87,7 @@ static void hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
                 rest[a] = boundary->where.component[a] ? boundary->where.velocity[a] : 0;
             }
             if (boundary->where.component[0]) brunt_condition_reflect(axisymmetric, place, (double)grid->h, now);
-            brunt_condition_hold(body, slot, node, now, rest, held, &boundary->last);
+            brunt_condition_hold(g, slot, node, now, rest, held, &boundary->last);
         }
     }
 }

@@ -106,15 +106,32 @@ static bool rests(const brunt_boundaries *boundaries, const brunt_unknowns *u, i
     return boundaries->boundary[u->holder[k] - 1].symmetry_plane >= 0;
 }
 
-// A force of those planes, which do no work, in equal parts.
-static void bear(brunt_world *world, int64_t k, brunt_weighed_force *F) {
+// A force of those planes on component k, which does no work, in equal parts.
+static void bear(brunt_world *world, int64_t k, double force) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     const brunt_boundaries *all = &world->boundaries;
-    F->impulse[k % u->dim] *= brunt_unknowns_bearers(u, k);
+    brunt_weighed_force F = {.work = {0}};
+    F.impulse[k % u->dim] = brunt_unknowns_bearers(u, k) * force;
     for (int p = 0; p < all->symmetry_count; p++)
         if (u->images.bearers[k] >> p & 1)
-            brunt_implicit_account_force(m, &all->boundary[all->symmetry[p].boundary].last, (int32_t)(k / u->dim), F);
+            brunt_implicit_account_force(m, &all->boundary[all->symmetry[p].boundary].last, (int32_t)(k / u->dim), &F);
+}
+
+// A force of what holds component k, F along that alone: of an image it acts where that is which it is an image of, and
+// planes bear the rest.
+static void hold(brunt_world *world, int64_t k, const brunt_weighed_force *F) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_unknowns *u = &m->unknowns;
+    const int a = (int)(k % u->dim);
+    const int32_t n = (int32_t)(k / u->dim), front = u->images.any ? u->images.front[n] : n;
+    brunt_weighed_force there = *F;
+    if (front != n) {
+        const double sign = brunt_unknowns_image_sign(u, k);
+        there.impulse[a] *= sign, there.work[a] *= sign;
+        bear(world, k, F->impulse[a]), bear(world, front * (int64_t)u->dim + a, -there.impulse[a]);
+    }
+    brunt_implicit_account_force(m, &world->boundaries.boundary[u->holder[k] - 1].last, front, &there);
 }
 
 // What holders and symmetry planes gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but
@@ -134,11 +151,11 @@ static void account_holders(brunt_world *world) {
         brunt_weighed_force F = {.work = {0}};
         F.impulse[a] = inertia - (1 - gamma) * before - gamma * after;
         if (borne) {
-            bear(world, k, &F);
+            bear(world, k, F.impulse[a]);
             continue;
         }
         F.work[a] = inertia - (1 - work) * before - work * after;
-        brunt_implicit_account_force(m, &world->boundaries.boundary[u->holder[k] - 1].last, (int32_t)(k / u->dim), &F);
+        hold(world, k, &F);
     }
 }
 

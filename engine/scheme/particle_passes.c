@@ -148,8 +148,14 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
     return BRUNT_OK;
 }
 
-static void hold_nodes(brunt_boundary *boundary, brunt_body *body, double time) {
-    if (boundary->kind->hold_grid) boundary->kind->hold_grid(body, boundary, time);
+static void hold_nodes(brunt_boundaries *boundaries, brunt_boundary *boundary, brunt_body *body, double time,
+                       bool accounted) {
+    acting_symmetry s;
+    if (!boundary->kind->hold_grid) return;
+    find_symmetry(boundaries, body, accounted, &s);
+    const int axis = s.count && s.plane[0].boundary < 0; // the first: what is beyond it is held by itself
+    boundary->kind->hold_grid(&(brunt_held_grid){body, s.plane + axis, s.count - axis, s.account + axis}, boundary,
+                              time);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that
@@ -162,9 +168,9 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
     for (int w = 0; w < world->boundaries.boundary_count; w++) {
         brunt_boundary *boundary = &world->boundaries.boundary[w];
         brunt_body *only = boundary->body < 0 ? NULL : world->bodies.all[boundary->body].mpm;
-        if (only) hold_nodes(boundary, only, world->clock.time);
+        if (only) hold_nodes(&world->boundaries, boundary, only, world->clock.time, true);
         for (int i = 0; i < world->bodies.mpm_count && boundary->body < 0; i++)
-            hold_nodes(boundary, &world->bodies.mpm[i], world->clock.time);
+            hold_nodes(&world->boundaries, boundary, &world->bodies.mpm[i], world->clock.time, true);
     }
     return BRUNT_OK;
 }
@@ -254,7 +260,7 @@ static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     brunt_boundary_walk acting = brunt_boundaries_of(&world->boundaries.acting, body->index);
     while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE) {
         brunt_boundary boundary = world->boundaries.boundary[w];
-        hold_nodes(&boundary, body, world->clock.time);
+        hold_nodes(&world->boundaries, &boundary, body, world->clock.time, false);
     }
 }
 

@@ -92,7 +92,7 @@ void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
                          u->end,         u->images.leader,
                          u->images.sign, u->images.follower,
                          u->images.mass, u->images.bearers,
-                         u->sloped};
+                         u->sloped,      u->images.front};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *u = (brunt_unknowns){.dim = u->dim};
 }
@@ -101,7 +101,7 @@ size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies)
     size_t bytes = u->mass_capacity + u->position_capacity + u->velocity_capacity + u->held_capacity +
                    u->holder_capacity + u->target_capacity + u->end_capacity + u->images.leader_capacity +
                    u->images.follower_capacity + u->images.sign_capacity + u->images.mass_capacity +
-                   u->images.bearers_capacity + u->sloped_capacity;
+                   u->images.bearers_capacity + u->images.front_capacity + u->sloped_capacity;
     for (int i = 0; i < bodies->mpm_count; i++) bytes += u->number_capacity[i];
     return bytes;
 }

@@ -14,9 +14,10 @@ typedef struct brunt_images {
     bool any;                   // there are symmetry planes of material points; else no arrays
     brunt_fold fold;            // of `leader`, `follower`, `sign`
     int32_t *leader, *follower; // by node; `fold.count` of them
+    int32_t *front;             // of each node: its image before the planes, where there is none its leader
     double *sign, *mass; // of each component: 0 on its symmetry plane; [kg] with all images, 0 on its symmetry plane
     uint32_t *bearers;   // of each component: the symmetry planes (bits) that carry what images take, in equal parts
-    size_t leader_capacity, follower_capacity, sign_capacity, mass_capacity, bearers_capacity;
+    size_t leader_capacity, follower_capacity, front_capacity, sign_capacity, mass_capacity, bearers_capacity;
 } brunt_images;
 
 // What the nodes bring into a step, `count` of them with `dim` components each.
@@ -66,6 +67,8 @@ void brunt_unknowns_divide(brunt_unknowns *u, brunt_world *world);
 void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, double *acceleration);
 // The part of what acts along component k that each of its bearers takes.
 double brunt_unknowns_bearers(const brunt_unknowns *u, int64_t k);
+// [-] What component k is of that of its node's front: 1, -1, or 0 on a plane.
+double brunt_unknowns_image_sign(const brunt_unknowns *u, int64_t k);
 // What is held of a node is held of its images.
 void brunt_unknowns_hold_images(brunt_unknowns *u);
 // --- unknowns_hold.c

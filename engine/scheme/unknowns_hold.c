@@ -57,25 +57,28 @@ static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, do
     return brunt_plane_distance(plane, time, x);
 }
 
-// Nodes in a boundary, or at it and behind it; of grids that it mirrors those at it.
-static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
+// Nodes of meshes in a boundary, or at it and behind it.
+static void hold_meshes(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
     const brunt_boundary *boundary = &world->boundaries.boundary[w];
     const brunt_bodies *bodies = &world->bodies;
-    int k, i, end;
+    int k, end;
     brunt_bodies_meshes(bodies, boundary->body, &k, &end);
     for (; boundary->kind->holds_meshes && k < end; k++)
         for (int32_t n = 0; n < bodies->fem[k].node_count; n++)
             hold_node(u, world, w, u->base[k] + n, ON_PLANE * bodies->fem[k].mean_edge, dt);
+}
+
+// The same of grids; images then follow what they are of.
+static void hold_points(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
+    const brunt_boundary *boundary = &world->boundaries.boundary[w];
+    const brunt_bodies *bodies = &world->bodies;
+    int i, end;
     brunt_bodies_points(bodies, boundary->body, &i, &end);
     for (; i < end && !boundary->in_pieces; i++) {
         const brunt_grid *grid = &bodies->mpm[i].grid;
         const double tolerance = ON_PLANE * (double)grid->h;
         for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
-            const int32_t n = u->number[i][q];
-            if (n < 0 ||
-                (boundary->symmetry_plane >= 0 && distance(u, &boundary->plane, world->clock.time, n) < -tolerance))
-                continue;
-            hold_node(u, world, w, n, tolerance, dt);
+            if (u->number[i][q] >= 0) hold_node(u, world, w, u->number[i][q], tolerance, dt);
         }
     }
 }
@@ -96,8 +99,13 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
     for (int w = 0; w < world->boundaries.boundary_count; w++)
         for (int a = 0; u->plane[w] >= 0 && a < u->dim; a++) hold_moving_plane(u, u->plane[w], a, dt);
     for (int k = 0; k < world->boundaries.sets.count; k++) hold_group(u, world, k, dt);
+    // What is on a plane with images rests there, whatever else would move it: they would not be opposite.
+    for (int m = 0; m < world->boundaries.symmetry_count; m++)
+        if (world->boundaries.symmetry[m].boundary >= 0) hold_points(u, world, world->boundaries.symmetry[m].boundary, dt);
     for (int w = 0; w < world->boundaries.boundary_count; w++)
-        if (world->boundaries.boundary[w].kind->hold_at) hold_nodes(u, world, w, dt);
+        if (world->boundaries.boundary[w].kind->hold_at) hold_meshes(u, world, w, dt);
+    for (int w = world->boundaries.boundary_count - 1; w >= 0; w--) // as in explicit steps the last one has it
+        if (world->boundaries.boundary[w].kind->hold_at) hold_points(u, world, w, dt);
     if (u->images.any) brunt_unknowns_hold_images(u);
 }
 

@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "contact/planes/followed.h"
 #include "scheme/unknowns.h"
-
-enum { LAYERS = 2 }; // of nodes that a symmetry plane has images of: what lies before it reaches no further behind
 
 const brunt_fold *brunt_unknowns_fold(const brunt_unknowns *u) {
     return u->images.any && u->images.fold.count ? &u->images.fold : NULL;
@@ -37,14 +36,20 @@ static void find_leader(brunt_unknowns *u, const brunt_world *world, int i, int3
     double share[BRUNT_MAX_PLANES];
     int32_t image[BRUNT_MAX_IMAGES][3], leader = n;
     real sign[BRUNT_MAX_IMAGES][3];
-    const int count = brunt_symmetry_images(symmetry, symmetry_count, at, LAYERS, image, sign);
+    const int count = brunt_symmetry_images(symmetry, symmetry_count, at, BRUNT_IMAGE_LAYERS, image, sign);
     int from = 0, others = 0;
-    for (int k = 1; k < count; k++) {
-        const int32_t other = brunt_unknowns_node_at(u, &world->bodies, i, image[k]);
-        others += other >= 0;
+    int32_t front = BRUNT_NONE;
+    for (int k = 0; k < count; k++) {
+        const int32_t other = k ? brunt_unknowns_node_at(u, &world->bodies, i, image[k]) : n;
+        bool before = other >= 0;
+        for (int m = 0; m < symmetry_count; m++)
+            before = before && brunt_symmetry_before(&symmetry[m], image[k]) >= 0;
+        if (before) front = other;
+        others += k && other >= 0;
         if (other >= 0 && other < leader) leader = other, from = k;
     }
     u->images.leader[n] = leader;
+    u->images.front[n] = front >= 0 ? front : leader;
     for (int a = 0; a < u->dim; a++) {
         const int64_t k = n * (int64_t)u->dim + a;
         u->images.sign[k] = (double)sign[from][a];
@@ -83,6 +88,7 @@ int brunt_unknowns_symmetry(brunt_unknowns *u, const brunt_world *world, brunt_e
     const size_t n = (size_t)u->count + 1, all = n * (size_t)u->dim;
     if (!images->any) return BRUNT_OK;
     if (BRUNT_CAPACITY(images->leader, n, 0, "images of nodes", error) ||
+        BRUNT_CAPACITY(images->front, n, 0, "images of nodes", error) ||
         BRUNT_CAPACITY(images->follower, n, 0, "images of nodes", error) ||
         BRUNT_CAPACITY(images->sign, all, 0, "images of nodes", error) ||
         BRUNT_CAPACITY(images->mass, all, 0, "images of nodes", error) ||
@@ -91,7 +97,7 @@ int brunt_unknowns_symmetry(brunt_unknowns *u, const brunt_world *world, brunt_e
     memset(images->mass, 0, all * sizeof *images->mass);
     memset(images->bearers, 0, all * sizeof *images->bearers);
     for (size_t k = 0; k < all; k++) images->sign[k] = 1;
-    for (int32_t k = 0; k < u->count; k++) images->leader[k] = k;
+    for (int32_t k = 0; k < u->count; k++) images->leader[k] = images->front[k] = k;
     for (int i = 0; i < world->bodies.mpm_count; i++) find_leaders(u, world, i);
     int32_t count = 0;
     for (int32_t k = 0; k < u->count; k++)
@@ -157,23 +163,16 @@ void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, dou
 
 // ------------------------------------------------------------------------------------------ what is held
 
+double brunt_unknowns_image_sign(const brunt_unknowns *u, int64_t k) {
+    return u->images.sign[k] * u->images.sign[u->images.front[k / u->dim] * (int64_t)u->dim + k % u->dim];
+}
+
 void brunt_unknowns_hold_images(brunt_unknowns *u) {
-    const brunt_images *images = &u->images;
-    for (int32_t i = 0; i < images->fold.count; i++) {
-        const int64_t n = images->follower[i] * (int64_t)u->dim,
-                      to = images->leader[images->follower[i]] * (int64_t)u->dim;
-        for (int a = 0; a < u->dim; a++) {
-            if (!u->held[n + a] || u->held[to + a] || images->sign[n + a] == 0) continue;
-            u->held[to + a] = 1, u->holder[to + a] = u->holder[n + a];
-            u->target[to + a] = images->sign[n + a] * u->target[n + a];
-            u->end[to + a] = images->sign[n + a] * u->end[n + a];
-        }
-    }
-    brunt_fold_spread(&images->fold, u->dim, u->target);
-    brunt_fold_spread(&images->fold, u->dim, u->end);
-    for (int32_t i = 0; i < images->fold.count; i++) {
-        const int64_t n = images->follower[i] * (int64_t)u->dim,
-                      to = images->leader[images->follower[i]] * (int64_t)u->dim;
-        for (int a = 0; a < u->dim; a++) u->held[n + a] = u->held[to + a], u->holder[n + a] = u->holder[to + a];
+    for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
+        const int64_t front = u->images.front[k / u->dim] * (int64_t)u->dim + k % u->dim;
+        if (front == k) continue;
+        u->held[k] = u->held[front], u->holder[k] = u->holder[front];
+        u->target[k] = brunt_unknowns_image_sign(u, k) * u->target[front];
+        u->end[k] = brunt_unknowns_image_sign(u, k) * u->end[front];
     }
 }

@@ -195,7 +195,7 @@ static const scene_key own_rows[] = {
     {"boundaries[].plane.normal", SCENE_VECTOR, "1", REQUIRED, NONE, "pointing to the side the bodies are on"},
     {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, CONDITION_WORDS, 0, false, "of a plane, a line or a mesh; symmetry: of a plane along the axes, for mpm on a grid line; slip of a line or mesh: in both directions, material does not leave it. Planes of condition stick or slip that stand still on a line of the grid hold mpm just there, by images (stick: of kernels quadratic and cubic, with nothing behind it at the start); other such planes by the nodes at and behind them, in implicit and load steps as lines do", .only = SCENE_AT_PLANE | SCENE_AT_LINE},
     {"boundaries[].friction", SCENE_REAL, "1", "0", 0, INFINITY, false, true, NULL, 0, true, "Coulomb coefficient, with condition: separate", .only = SCENE_AT_PLANE | SCENE_AT_LINE},
-    {"boundaries[].region", SCENE_SHAPE, NULL, OPTIONAL, NONE, "grid nodes in there are given a velocity; it acts on bodies of method mpm"},
+    {"boundaries[].region", SCENE_SHAPE, NULL, OPTIONAL, NONE, "grid nodes in there are given a velocity, of several the last one's; it acts on bodies of method mpm. Before planes that hold by images (condition) they move those images; what is on such a plane rests across it, with condition stick at all"},
     {"boundaries[].place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the region, as for bodies", .only = SCENE_AT_REGION},
     {"boundaries[].place[].translate", SCENE_VECTOR, "m", OPTIONAL, NONE, "a shift"},
     {"boundaries[].place[].rotate", SCENE_GROUP, NULL, OPTIONAL, NONE, "a turn"},

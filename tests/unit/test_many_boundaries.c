@@ -1,5 +1,6 @@
 // Scenes of more boundaries than a byte counts, as those of hundreds of bodies have: each acts, on the bodies that it
 // names and no others.
+#include "contact/planes/grid_conditions.h"
 #include "tests/support/def_world.h"
 #include "world/world.h"
 
@@ -89,8 +90,8 @@ END_TEST
 
 // Counts what each body of material points is held by in a step.
 static int64_t held;
-static void count_hold(brunt_body *body, brunt_boundary *b, double time) {
-    ck_assert(b->body < 0 || b->body == body->index);
+static void count_hold(const brunt_held_grid *g, brunt_boundary *b, double time) {
+    ck_assert(b->body < 0 || b->body == g->body->index);
     (void)time, held++;
 }
 

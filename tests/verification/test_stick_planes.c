@@ -2,7 +2,8 @@
 // opposite velocities; what pushes them there pushes the plane.
 #include <math.h>
 
-#include "tests/support/def_world.h"
+#include "contact/planes/followed.h"
+#include "tests/support/implicit_world.h"
 #include "world/world.h"
 
 static const double H = 0.1, DENSITY = 1000, YOUNG = 1e7; // waves at 100 m/s
@@ -278,7 +279,7 @@ START_TEST(meets_the_other_way_round) {
 }
 END_TEST
 
-// Greatest velocity, beside the opposite one of its image, of a node before the plane of body a; *most: of any node.
+// Greatest velocity, beside that which its image by the plane makes it, of a node of body a; *most: of any node.
 static double off_images(const brunt_world *world, double *most) {
     const brunt_symmetry_plane *p = &world->boundaries.symmetry[0];
     const brunt_grid *grid = &world->bodies.mpm[0].grid;
@@ -296,8 +297,9 @@ static double off_images(const brunt_world *world, double *most) {
             for (int a = 0; a < grid->dim; a++) {
                 const double v = (double)n[BRUNT_NODE_VELOCITY + a];
                 *most = fmax(*most, fabs(v));
+                const double sign = a == p->axis || p->sticks ? -1 : 1;
                 if (image && image[0] > 0 && n[0] > 0)
-                    off = fmax(off, fabs(v + (double)image[BRUNT_NODE_VELOCITY + a]));
+                    off = fmax(off, fabs(v - sign * (double)image[BRUNT_NODE_VELOCITY + a]));
             }
         }
     return off;
@@ -343,6 +345,125 @@ START_TEST(as_against_symmetry) {
     printf("  %dD along %d, side %+g: %.2e cells apart\n", l->dimension, l->axis, l->side, off);
     ck_assert_double_le(off, 0.02); // of 0.1 that they were driven
     for (int k = 0; k < 2; k++) free(from[k]), brunt_world_destroy(world[k]);
+}
+END_TEST
+
+// ------------------------------------------------------------------------------------------ what else holds there
+
+// A region that moves a block on a plane whose nodes have images: where it begins and ends along the normal [cells],
+// and which of its components it gives.
+typedef struct grip {
+    double low, high;
+    bool across, along;
+} grip;
+static const grip grips[] = {
+    {0.5, 1.5, true, true},    // the first nodes before the plane, whose images follow
+    {-0.5, 1.5, true, true},   // those on it as well, which rest
+    {-9, 1.5, true, true},     // and what is behind it, which is images
+    {-0.5, 0.5, true, true},   // what is on it alone
+    {0, 2, true, true},        // from it on, to a line of the grid
+    {-9, -0.5, true, true},    // what is behind it alone: nothing of the block is there
+    {-0.5, 1.5, true, false},  {-0.5, 1.5, false, true}, {1.5, 9, true, true}, // far from it
+};
+enum { GRIPS = sizeof grips / sizeof *grips };
+static const brunt_condition mirrors[] = {BRUNT_STICK, BRUNT_SLIP, BRUNT_SYMMETRY};
+enum { MIRRORS = sizeof mirrors / sizeof *mirrors };
+
+static brunt_region_def *region(brunt_world_def *def, const lie *l, const grip *g, const double v[3]) {
+    const double from[3] = {g->low * H, -10 * H, -10 * H}, to[3] = {g->high * H, 10 * H, 10 * H},
+                 which[3] = {g->across, g->along, g->along};
+    double a[3], b[3], c[3];
+    if (!def->regions) def->regions = brunt_alloc(4 * sizeof *def->regions);
+    brunt_region_def *r = &def->regions[def->region_count++];
+    *r = brunt_region_def_default();
+    r->shape.kind = BRUNT_BOX;
+    turn(l, from, a), turn(l, to, b), turn(l, which, c), turn(l, v, r->velocity);
+    for (int k = 0; k < 3; k++) {
+        r->shape.min[k] = fmin(a[k], b[k]), r->shape.max[k] = fmax(a[k], b[k]);
+        r->component[k] = c[k] != 0;
+    }
+    return r;
+}
+
+// Whatever the region gives, images are exactly those of what is before the plane, its work is what its impulse does on
+// its way, and with the plane's impulse it is that of the momentum.
+START_TEST(held_before_it) {
+    const lie *l = &lies[_i % LIES];
+    const grip *g = &grips[_i / LIES % GRIPS];
+    const brunt_condition mirror = mirrors[_i / LIES / GRIPS % MIRRORS];
+    const int scheme = _i / LIES / GRIPS / MIRRORS; // explicit steps, backward Euler, Newmark
+    const double v[3] = {0.3, 0.5, 0.2};
+    brunt_world_def def = begin(l, H);
+    def.kernel = l == &lies[1] ? BRUNT_CUBIC : BRUNT_QUADRATIC;
+    def.transfer = l == &lies[2] ? BRUNT_FLIP : BRUNT_APIC;
+    if (scheme) go_implicit(&def, scheme == 1 ? BRUNT_EULER : BRUNT_NEWMARK, 1e-3), def.cfl = 0;
+    box(&def, l, "a", XYZ(0, -3 * H, 0), XYZ(3 * H, 3 * H, H))->total_lagrangian = !scheme && l == &lies[3];
+    plane(&def, l, 0, XYZ(1, 0, 0), mirror);
+    brunt_region_def *r = region(&def, l, g, v);
+    brunt_world *world = world_from(&def);
+    ck_assert_int_eq(world->boundaries.symmetry_count, 1);
+    double worst = 0, most = 0;
+    for (int k = 0; k < 20; k++) {
+        world_steps(world, scheme ? 1 : 2);
+        if (!scheme) worst = fmax(worst, off_images(world, &most));
+    }
+    const brunt_reaction hold = world_boundary(world, 1);
+    const brunt_momentum m = world_momentum(world);
+    const brunt_energy e = world_energy(world);
+    double work = 0, size = 0;
+    for (int a = 0; a < 3; a++) work += r->component[a] ? r->velocity[a] * hold.impulse[a] : 0, size += fabs(hold.impulse[a]);
+    printf("  %dD along %d, side %+g, plane %d, %g to %g%s: images off by %.1e of %.1e m/s, drift %.1e %.1e, "
+           "energy %+.1e, work %.4g J off by %.1e\n",
+           l->dimension, l->axis, l->side, (int)mirror, g->low, g->high, scheme ? scheme == 1 ? ", Euler" : ", Newmark" : "", worst, most,
+           m.linear_drift, m.angular_drift, e.error_relative, work, e.external_work - work);
+    const bool nothing = g->high < 0 || (g->high < 1 && mirror == BRUNT_STICK);
+    if (nothing) ck_assert_double_eq(size, 0);
+    else ck_assert_double_gt(size, 1);
+    ck_assert(nothing || scheme || most > 0.1);
+    ck_assert_double_le(worst, ROUNDING);
+    ck_assert_double_le(m.linear_drift, 100 * ROUNDING);
+    if (!scheme && l != &lies[2] && l != &lies[3]) // FLIP keeps no moment, total-Lagrangian grids where they began
+        ck_assert_double_le(m.angular_drift, 100 * ROUNDING);
+    ck_assert_double_le(fabs(e.error_relative), sizeof(real) == 4 ? 1e-4 : 1e-5);
+    ck_assert_double_le(fabs(e.external_work - work), 100 * ROUNDING * work);
+    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
+}
+END_TEST
+
+// Of two regions that give a node something else the later one has it, images with it, in each scheme.
+START_TEST(later_ones_hold) {
+    const lie *l = &lies[_i % LIES];
+    const bool implicit = _i / LIES / 2;
+    const bool swapped = _i / LIES % 2;
+    brunt_world_def def = begin(l, H);
+    if (implicit) go_implicit(&def, BRUNT_EULER, 1e-3), def.cfl = 0;
+    box(&def, l, "a", XYZ(0, -3 * H, 0), XYZ(3 * H, 3 * H, H));
+    plane(&def, l, 0, XYZ(1, 0, 0), BRUNT_STICK);
+    for (int k = 0; k < 2; k++) region(&def, l, &grips[0], XYZ(0, k == swapped ? 0.3 : 0.1, 0));
+    brunt_world *world = world_from(&def);
+    world_steps(world, 5);
+    const int along = l->dimension == 2 ? 1 - l->axis : (l->axis + 1) % 3;
+    const double first = world_boundary(world, 1).impulse[along],
+                 second = world_boundary(world, 2).impulse[along];
+    printf("  %dD along %d, side %+g%s%s: %.3g and %.3g N s\n", l->dimension, l->axis, l->side,
+           implicit ? ", implicit" : "", swapped ? ", swapped" : "", first, second);
+    const brunt_symmetry_plane *p = &world->boundaries.symmetry[0];
+    for (int32_t s = 0; s < world->bodies.mpm[0].grid.slot_count && !implicit; s++)
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
+            const brunt_grid *grid = &world->bodies.mpm[0].grid;
+            const real *n = grid->nodes + (s * (int64_t)BRUNT_BLOCK_NODES + node) * BRUNT_NODE_REALS;
+            int32_t at[3];
+            brunt_node_coordinates(grid, s, node, at);
+            if (brunt_symmetry_before(p, at) == 1 && n[0] > 0)
+                ck_assert_double_eq((double)n[BRUNT_NODE_VELOCITY + along], (double)(real)(l->side * (swapped ? 0.3 : 0.1)));
+        }
+    if (implicit) ck_assert_double_eq(first, 0);
+    ck_assert_double_gt(l->side * (first + second), 0);
+    ck_assert_double_le(world_momentum(world).linear_drift, 100 * ROUNDING);
+    if (implicit) ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-10);
+    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
 }
 END_TEST
 
@@ -426,6 +547,8 @@ int main(void) {
     if (sizeof(real) == 8) ADD_LOOP(meets_the_other_way_round, 4 * ON_A_THIN_ONE);
     ADD_LOOP(images_follow, 2 * MEETINGS * LIES);
     ADD_LOOP(as_against_symmetry, LIES);
+    ADD_LOOP(held_before_it, (sizeof(real) == 8 ? 3 : 1) * MIRRORS * GRIPS * LIES);
+    ADD_LOOP(later_ones_hold, (sizeof(real) == 8 ? 4 : 2) * LIES);
     ADD_LOOP(nodes_hold, 4);
     ADD_LOOP(others_keep_images, 3);
     ADD_LOOP(same_bits, 2 * MEETINGS);
