@@ -149,7 +149,7 @@ void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const bru
             double J[3] = {0};
             J[a] = -given;
             brunt_impulse_account *last = &m->boundaries[w].last;
-            brunt_impulse_account_record(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+            brunt_impulse_account_record(last, &last->normal_loss, J, s->x[n], s->old[n], s->v[n], s->v[n]);
         }
     }
 }
