@@ -197,7 +197,7 @@ static int reserve_arrays(brunt_boundary_rows *rows, brunt_error *error) {
     rows->row_count = 0;
     for (int32_t p = 0; p < rows->patch_count; p++)
         rows->patch[p].row = rows->row_count, rows->row_count += rows->patch[p].rows;
-    rows->exact = rows->forces && !rows->still && rows->row_count <= BRUNT_BOUNDARY_ANSWER_LIMIT;
+    rows->exact = rows->forces && !rows->still && rows->row_count <= rows->answer_limit;
     for (int32_t p = 0; p < rows->patch_count; p++) {
         const int64_t nodes = rows->first[p + 1] - rows->first[p];
         if (nodes > most) most = nodes;

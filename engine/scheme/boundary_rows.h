@@ -48,6 +48,7 @@ typedef struct brunt_boundary_rows {
     bool forces;     // there is no energy
     bool exact;      // ... and all tractions follow within Newton's method, each by what it moves (boundary_answer.c)
     int row_count;
+    int answer_limit; // rows up to which they do
     double *answer;  // room for that
     int64_t reached; // boundary particles with a distance
     bool any_leave;  // surfaces that material may leave
@@ -92,7 +93,7 @@ void brunt_boundary_patch_admit(const brunt_boundary_patch *patch, double t[3]);
 // --- boundary_answer.c
 // Multipliers as they are to be after the step p from u. Adds what that changes of the forces at u to g. BRUNT_OK, or
 // BRUNT_FAILED: *worst finds no end, or (BRUNT_NONE) there is no answer of the factor, or no memory.
-enum { BRUNT_BOUNDARY_ANSWER_LIMIT = 2048 }; // rows: of more than that the matrix has those that hold, and follows
+enum { BRUNT_BOUNDARY_ANSWER_LIMIT = 2048 }; // rows, of a scene; of more the matrix has those that hold, and follows
 int brunt_boundary_rows_answer(brunt_boundary_rows *rows, const double *u, const double *p, double *g,
                                const brunt_response *response, int32_t *worst);
 // The forces of tractions t on the bodies, on node k of all [N].

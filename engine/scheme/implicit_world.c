@@ -206,6 +206,7 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     for (int b = 0; b < bodies->count; b++)
         m->forces = m->forces || brunt_bodies_material(&world->bodies, b)->differences;
     m->rows.forces = m->forces;
+    m->rows.answer_limit = BRUNT_BOUNDARY_ANSWER_LIMIT;
     if (m->forces && brunt_solver_iterates(world->settings.newton.solver))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "newton.solver: conjugate gradients solve symmetric systems, and a material without a "
