@@ -35,8 +35,9 @@ typedef struct brunt_contact_context {
     const brunt_pair_map *pair_map;
     int body_count;
     double dt, cell; // [s], [m] of the contact grid
-    double kick;     // [s] what forces act over, where boundaries meet material points
+    double kick;     // [s] what forces act over
     int iterations;  // sweeps, or augury iterations of the paper's form
+    bool springs;    // material points that overlap walls and facets are pushed out by springs
     double look;     // [m] bodies are near from twice this distance on, at least
     int64_t step;
     const brunt_symmetry_plane *symmetry; // of the grids

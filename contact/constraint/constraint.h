@@ -15,9 +15,9 @@
 //
 // All points of a step together must satisfy: u_n >= target, normal impulse >= 0, one of them 0; friction impulse
 // within the Coulomb cone and against what is left of slip. Points that hold: u_n = target, and where they stick no
-// slip is left. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the coupling matrix
-// (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can add energy.
-// Neither the order of points nor the number of threads changes a bit.
+// slip is left. What a spring pushes pushes at least with that. Solved by projected Jacobi sweeps: a point's correction
+// is scaled by its row sum of the coupling matrix (in units of its own effective mass), so that a uniform approach is
+// met in one sweep and no sweep can add energy. Neither the order of points nor the number of threads changes a bit.
 //
 // Accelerated sweeps (Nesterov 1983, with the restarts of O'Donoghue and Candes 2015; contact: Mazhar, Heyn, Negrut and
 // Tasora 2015) begin with a share of the last correction on top. Where touches are many to a node they need a
@@ -66,7 +66,8 @@ typedef struct brunt_constraint {
     double gap;                     // [m] before the step
     double target;                  // [m/s] least u_n
     double friction;                // of what sticks: greater than 0
-    double least;                   // [N s] of the normal impulse: 0; -INFINITY: it holds
+    double least;                   // [N s] of the normal impulse: 0; -INFINITY: it holds; what its spring pushes with
+    double spring;                  // [N/m] of what overlaps; 0: none
     bool sticks;                    // friction has no bound
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *account; // where the point is recorded: impulse on the slave times `sign`
@@ -118,6 +119,7 @@ typedef struct brunt_constraint_set {
     size_t applied_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
+    double kick;            // [s] what springs push over
     bool gives_back;        // constraints have touches ...
     double leap;            // [m/s] ... what comes faster is lost: it would be thrown past what is near
     double shallow;         // [m] ... what is deeper is given nothing back until it is out again

@@ -13,6 +13,7 @@ typedef struct brunt_impulse_account {
     double normal_loss;        // [J] dissipated by the normal impulse
     double friction_loss;      // [J] dissipated by the tangential impulse
     double area;               // [m^2] that touched in the last step
+    double spring;             // [J] of normal_loss: what springs held at the start of the last step
     double unspent, overspent; // [J] while a step gives back what touches took (release.c)
 } brunt_impulse_account;
 

@@ -32,7 +32,8 @@ void brunt_constraints_validate(const brunt_constraint_set *p) {
         BRUNT_ASSERT(c->first >= 0 && c->count > 0 && end <= p->entry_count);
         BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
         BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
-        BRUNT_ASSERT(c->account && c->friction >= 0 && c->least <= 0 && c->normal_impulse >= c->least);
+        BRUNT_ASSERT(c->account && c->friction >= 0 && c->spring >= 0 && (c->spring > 0 || c->least <= 0));
+        BRUNT_ASSERT(c->normal_impulse >= fmin(c->least, 0));
         BRUNT_ASSERT(!c->sticks || c->friction > 0);
     }
 }
@@ -278,6 +279,12 @@ static void add_levers(const brunt_dof_node *s, const brunt_constraint_entry *ow
     }
 }
 
+// What a spring that is overlapped pushes with, no more than what throws it out twice as fast as it is deep.
+static double spring_impulse(const brunt_constraint_set *p, const brunt_constraint *constraint) {
+    return fmax(0, -constraint->gap) *
+           fmin(p->kick * constraint->spring, 2 * constraint->scale / (constraint->row_sum * p->kick));
+}
+
 // Row sums, in units of the effective masses.
 static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -308,6 +315,7 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
         }
         constraint->row_sum = fmax(constraint->row_sum, 1);
         constraint->row_sum_t = fmax(constraint->row_sum_t, 1);
+        if (constraint->spring > 0) constraint->least = spring_impulse(p, constraint);
     }
 }
 
@@ -461,6 +469,7 @@ static void account_constraints(brunt_constraint_set *p) {
         const brunt_constraint *constraint = &p->constraint[k];
         if (!brunt_constraint_acts(constraint)) continue;
         constraint->account->area += constraint->area;
+        constraint->account->spring += 0.5 * constraint->spring * pow(fmin(0, constraint->gap), 2);
         // The account is of the second body: the slave's impulse, or the reaction to it; within one body there are
         // both.
         brunt_impulse_account within = {.area = 0}, *account = constraint->sign == 0 ? &within : constraint->account;

@@ -57,6 +57,7 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
     brunt_node_to_facet *facets = *work->node_to_facet;
     brunt_constraints_clear(set);
     set->gives_back = work->def->touch == BRUNT_TOUCH_ELASTIC;
+    set->kick = m->kick;
     set->leap = BRUNT_LEAP * m->surface->mean_edge / m->dt;
     set->shallow = BRUNT_SHALLOW * m->surface->mean_edge;
     if (set->gives_back && brunt_node_touches_make(facets, m->surface->node_count, error)) return BRUNT_FAILED;
@@ -107,7 +108,7 @@ const brunt_contact_row brunt_contact_point_touches = {
     .forms = FORM(NODE_TO_FACET),
     .schemes = EXPLICIT,
     .meets = BRUNT_MEET_AT_PARTICLES,
-    .keys = "form cell tolerance iterations",
+    .keys = "form cell tolerance iterations stop",
     .never_axisymmetric = true,
     .accepts = points_alone,
 };
@@ -164,7 +165,7 @@ const brunt_contact_row brunt_contact_node_to_facet = {
     .forms = FORM(NODE_TO_FACET),
     .schemes = EXPLICIT,
     .meets = BRUNT_MEET_AT_FACETS,
-    .keys = "form cell tolerance iterations touch",
+    .keys = "form cell tolerance iterations touch stop",
     .self = BRUNT_SELF_MEMBRANES,
     .knows_membranes = true,
     .planes = true,

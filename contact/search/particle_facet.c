@@ -6,6 +6,7 @@
 #include "contact/search/node_to_facet_parts.h"
 #include "contact/distance/particle_extent.h"
 
+#include "contact/search/overlap_spring.h"
 #include "contact/search/particle_dof.h"
 #include "mpm/mpm_body.h"
 #include "mpm/particles.h"
@@ -39,8 +40,10 @@ static int add_particle_candidate(const search_job *j, particle_list *list, int3
     brunt_particle_nodes_velocity(&under, j->body->grid.dim, BRUNT_NODE_OLD, old);
     const double approach = brunt_node_to_facet_approach(surface, h, x, v, surface->v);
     const double before = brunt_node_to_facet_approach(surface, h, x, old, surface->old);
-    const double target = brunt_node_to_facet_target(surface, h->gap, fmin(before, LIFT * approach), before, j->m->dt);
-    if (!(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;
+    const double spring = brunt_overlap_spring(j->m, j->body, s);
+    const double gap = h->gap + (spring > 0 ? brunt_overlap_limit(j->body, brunt_extent_along(j->body, s, h->n)) : 0);
+    const double target = brunt_node_to_facet_target(surface, gap, fmin(before, LIFT * approach), before, j->m->dt);
+    if (!(spring > 0 && h->gap < 0) && !(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;
     const size_t used = (size_t)list->count;
     if (BRUNT_CAPACITY_IN(list->candidate, list->capacity, used + 1, used, "facets near particles", error))
         return BRUNT_FAILED;
@@ -124,6 +127,7 @@ static int add_particle_constraint(const search_job *j, const particle_candidate
     int32_t at = brunt_constraints_add(set, error);
     if (at < 0) return BRUNT_FAILED;
     brunt_node_to_facet_constraint(j->m, &found->h, found->x, body->index, &set->constraint[at]);
+    set->constraint[at].spring = brunt_overlap_spring(j->m, j->body, found->particle);
     set->constraint[at].target = found->h.target, set->constraint[at].tag = j->dofs->tag;
     set->constraint[at].area = body->spacing * (body->grid.dim == 3     ? body->spacing
                                                 : surface->axisymmetric ? 2 * M_PI * found->x[0]

@@ -16,6 +16,7 @@
 #include "contact/distance/particle_extent.h"
 #include "contact/planes/boundary_lists.h"
 #include "contact/planes/condition.h"
+#include "contact/search/overlap_spring.h"
 #include "mpm/particles.h"
 
 enum { MAX_SWEEPS = 16, MORE_SWEEPS = 64 };
@@ -49,13 +50,15 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
                         brunt_error *error) {
     const brunt_plane_def *plane = &j->boundary->plane;
     const int dim = j->body->grid.dim;
-    const double target = j->speed - fmax(gap, 0) / j->m->dt;
+    const double spring = brunt_overlap_spring(j->m, j->body, s),
+                 room = spring > 0 ? brunt_overlap_limit(j->body, distance - gap) : 0;
+    const double target = j->speed - fmax(gap + room, 0) / j->m->dt;
     brunt_particle_nodes under;
     double v[3], approach = 0;
     brunt_particle_nodes_find(j->body, b, s, NULL, &under);
     brunt_particle_nodes_velocity(&under, dim, BRUNT_NODE_VELOCITY, v);
     for (int a = 0; a < dim; a++) approach += plane->normal[a] * v[a];
-    if (approach > target + 1e-6 * (double)j->body->grid.h / j->m->dt) return BRUNT_OK;
+    if (!(spring > 0 && gap < 0) && approach > target + 1e-6 * (double)j->body->grid.h / j->m->dt) return BRUNT_OK;
     const int32_t at = brunt_constraints_add(j->set, error);
     if (at < 0) return BRUNT_FAILED;
     brunt_constraint *constraint = &j->set->constraint[at];
@@ -63,6 +66,7 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
     memcpy(constraint->n, plane->normal, sizeof constraint->n);
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target - j->speed, constraint->friction = plane->friction;
+    constraint->spring = spring;
     constraint->account = &j->boundary->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
     if (brunt_particle_dofs_enter(j->body, &under, 1, j->dofs, j->set, error)) return BRUNT_FAILED;
     return plane->friction > 0 ? add_friction_point(j, b, s, x, distance, error) : BRUNT_OK;
@@ -124,6 +128,7 @@ int brunt_boundaries_meet_points(const brunt_contact_context *m, brunt_body *bod
                                  brunt_constraint_set *set, brunt_error *error) {
     if (brunt_particle_dofs_begin(m, body, dofs, error)) return BRUNT_FAILED;
     brunt_constraints_clear(set);
+    set->kick = m->kick;
     int w;
     bool further = false, met = false;
     brunt_boundary_walk acting = brunt_boundaries_of(m->acting, body->index);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "contact/distance/gjk.h"
+#include "contact/search/overlap_spring.h"
 #include "contact/search/point_surface.h"
 
 static const double NEAR = 0.25; // spacings: how near particles look at each other, if nothing moves faster
@@ -25,7 +26,7 @@ typedef struct touch {
     int64_t particle, particles[BRUNT_PARTICLES_TOGETHER];
     int count;
     double x[3], n[3]; // n: from the master to the slave
-    double gap, target;
+    double gap, target, spring;
 } touch;
 
 typedef struct touch_list {
@@ -216,8 +217,15 @@ static int look_from(const look *l, int32_t b, int64_t s, touch_list *list, brun
     if (!(apart ? measure(l, &list->other, n, &t) : best_slope(l, list, &t)) || t.gap > l->travel) return BRUNT_OK;
     t.gap = fmax(t.gap, slope_gap(l, &t));
     if (t.gap > l->travel) return BRUNT_OK;
-    t.target = -fmax(t.gap, 0) / dt;
-    if (!(approach_of(l, &t) < t.target + 1e-6 * (double)l->slave->grid.h / dt)) return BRUNT_OK;
+    t.spring = brunt_overlap_spring_between(l->m, l->slave, s, l->master);
+    const double back[3] = {-t.n[0], -t.n[1], -t.n[2]},
+                 room = t.spring > 0
+                            ? brunt_overlap_limit(l->slave, brunt_point_extent(l->slave, t.particle, back)) +
+                                  brunt_overlap_limit(l->master, brunt_point_extent(l->master, t.particles[0], t.n))
+                            : 0;
+    t.target = -fmax(t.gap + room, 0) / dt;
+    if (!(t.spring > 0 && t.gap < 0) && !(approach_of(l, &t) < t.target + 1e-6 * (double)l->slave->grid.h / dt))
+        return BRUNT_OK;
     if (BRUNT_CAPACITY_MORE(list->touch, "particles that touch", error)) return BRUNT_FAILED;
     list->touch[list->touch_count++] = t;
     return BRUNT_OK;
@@ -285,7 +293,7 @@ static int add_constraint(const look *l, const touch *t, brunt_error *error) {
     brunt_constraint *constraint = &set->constraint[at];
     memcpy(constraint->x, t->x, sizeof constraint->x);
     memcpy(constraint->n, t->n, sizeof constraint->n);
-    constraint->gap = t->gap, constraint->target = t->target;
+    constraint->gap = t->gap, constraint->target = t->target, constraint->spring = t->spring;
     constraint->friction = pair->friction;
     constraint->account = &pair->last;
     constraint->sign = l->slave->index > l->master->index ? 1 : -1;
@@ -352,6 +360,7 @@ int brunt_point_touches_apply(const brunt_contact_context *m, int sweeps, double
     brunt_point_touches *t = *touches;
     look l = {.m = m, .t = t};
     brunt_constraints_clear(&t->set);
+    t->set.kick = m->kick;
     for (int k = 0; k < m->mpm_count; k++) {
         if (brunt_particle_dofs_begin(m, &m->mpm[k], &t->dofs[k], error)) return BRUNT_FAILED;
         t->dofs[k].tag = k;

@@ -17,6 +17,7 @@
 #include "boundary/boundary_surface.h"
 #include "boundary/curve.h"
 #include "contact/distance/particle_extent.h"
+#include "contact/search/overlap_spring.h"
 #include "contact/search/particle_dof.h"
 
 static const double NEAR = 0.1;     // cells: gaps that are looked at, beside how far things go in a step
@@ -155,7 +156,7 @@ static double push_out(const surface_job *j, double gap, double approach, double
 
 // The rate along n at which a point has to go at least, beside the surface's; false: it is not met.
 static bool find_target(const surface_job *j, const point *p, const double n[3], const double v[3], double gap,
-                        double *target) {
+                        double room, double *target) {
     const brunt_grid *grid = &j->body->grid;
     double now[3], old[3], approach = 0, before = 0;
     *target = 0;
@@ -163,8 +164,9 @@ static bool find_target(const surface_job *j, const point *p, const double n[3],
     brunt_particle_nodes_velocity(&p->under, grid->dim, BRUNT_NODE_VELOCITY, now);
     brunt_particle_nodes_velocity(&p->under, grid->dim, BRUNT_NODE_OLD, old);
     for (int a = 0; a < grid->dim; a++) approach += n[a] * (now[a] - v[a]), before += n[a] * (old[a] - v[a]);
+    gap += room;
     *target = gap < 0 ? push_out(j, gap, approach, before) : -gap / j->m->dt;
-    return approach <= *target + 1e-6 * (double)grid->h / j->m->dt;
+    return gap < room || approach <= *target + 1e-6 * (double)grid->h / j->m->dt;
 }
 
 // The boundary particle that is nearest to a place on the surface, as it was at the start.
@@ -186,9 +188,11 @@ static int add_touch(const surface_job *j, point *p, const brunt_touch *touch, b
     double n[3], v[3], target;
     move_with(j, touch, n, v);
     const double extent = brunt_extent_along(j->body, p->slot, n), gap = touch->distance - extent;
-    if (leaves(j) ? gap > j->near || touch->distance < -extent : fabs(touch->distance) > HOLD * extent) return BRUNT_OK;
+    const double spring = leaves(j) ? brunt_overlap_spring(j->m, j->body, p->slot) : 0,
+                 room = spring > 0 ? brunt_overlap_limit(j->body, extent) : extent;
+    if (leaves(j) ? gap > j->near || touch->distance < -room : fabs(touch->distance) > HOLD * extent) return BRUNT_OK;
     if (!p->under.count) brunt_particle_nodes_find(j->body, p->block, p->slot, NULL, &p->under);
-    if (!find_target(j, p, n, v, gap, &target)) return BRUNT_OK;
+    if (!find_target(j, p, n, v, gap, spring > 0 ? room : 0, &target)) return BRUNT_OK;
     const int32_t at = brunt_constraints_add(j->set, error);
     if (at < 0 || BRUNT_CAPACITY_MORE(s->touching, "material points at a boundary", error)) return BRUNT_FAILED;
     s->touching[s->touching_count++] = (brunt_touching){at, nearest_particle(s, touch->at)};
@@ -196,7 +200,7 @@ static int add_touch(const surface_job *j, point *p, const brunt_touch *touch, b
     memcpy(c->x, p->x, sizeof c->x), memcpy(c->n, n, sizeof c->n);
     if (!s->tool.free) memcpy(c->plane, v, sizeof c->plane);
     c->gap = gap, c->target = target;
-    c->least = leaves(j) ? 0 : -INFINITY, c->sticks = s->def.condition == BRUNT_STICK;
+    c->spring = spring, c->least = leaves(j) ? 0 : -INFINITY, c->sticks = s->def.condition == BRUNT_STICK;
     c->friction = c->sticks ? 1 : s->def.friction;
     c->account = &j->boundary->last, c->sign = 1, c->tag = j->dofs->tag;
     c->area = pow(j->body->spacing, j->body->particles.dim - 1);

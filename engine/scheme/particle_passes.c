@@ -176,7 +176,8 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
 }
 
 int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error) {
-    const brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(&world->timing));
+    brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(&world->timing));
+    m.kick = step->kick;
     const brunt_contact *contact = &world->contact;
     int failed = contact->has_grid ? brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity, error) : BRUNT_OK;
     if (contact->has_touches && !failed)

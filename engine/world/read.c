@@ -194,6 +194,9 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const brunt_accounts accounts = brunt_accounts_of(world);
     brunt_ledger_energy(&world->ledger, &accounts, energy);
     energy->contact_held = brunt_node_to_facet_held(world->contact.node_to_facet, &world->contact.surface);
+    for (int32_t k = 0; k < world->pairs.count; k++) energy->contact_held += world->pairs.pair[k].last.spring;
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
+        energy->contact_held += world->boundaries.boundary[w].last.spring;
 }
 
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {

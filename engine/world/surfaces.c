@@ -234,6 +234,7 @@ brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, br
                                    .dt = dt,
                                    .cell = world->contact.cell,
                                    .iterations = world->contact.def.iterations,
+                                   .springs = world->contact.def.stop == BRUNT_STOP_SPRING,
                                    .look = facets ? facets->look * world->contact.cell : 0,
                                    .step = (int64_t)world->clock.steps,
                                    .symmetry = world->boundaries.symmetry,
@@ -275,7 +276,8 @@ static bool is_clear(brunt_contact *contact, const brunt_contact_context *m) {
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = brunt_pass_timer(&world->timing);
-    const brunt_contact_context m = brunt_contact_context_of(world, dt, timer);
+    brunt_contact_context m = brunt_contact_context_of(world, dt, timer);
+    m.kick = kick;
     if (is_clear(&world->contact, &m)) return BRUNT_OK;
     memcpy(world->contact.surface.motion.frame, world->contact.frame, sizeof world->contact.surface.motion.frame);
     brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);

@@ -190,6 +190,15 @@ static bool uses(const brunt_world_def *world, const brunt_contact_row *row) {
     return used && meshes;
 }
 
+// Whether boundaries push material points and let go, in explicit steps: how they are stopped is asked there, too.
+static bool points_meet_boundaries(const brunt_world_def *world) {
+    bool points = false, pushes = false;
+    for (int i = 0; i < world->body_count; i++) points |= world->bodies[i].method == BRUNT_MPM;
+    for (int i = 0; i < world->plane_count; i++) pushes |= world->planes[i].condition == BRUNT_SEPARATE;
+    for (int i = 0; i < world->surface_count; i++) pushes |= world->surfaces[i].condition == BRUNT_SEPARATE;
+    return points && pushes && world->scheme == BRUNT_EXPLICIT;
+}
+
 static void refuse_key(scene_reader *reader, const scene_node *node, const char *key, const char *what,
                        const char *words) {
     char why[160];
@@ -202,7 +211,7 @@ static bool takes(scene_reader *reader, scene_node *node, const char *key) {
     const brunt_world_def *world = &reader->scene->world;
     const scene_node *form = brunt_tree_child(node, "form");
     const brunt_contact_row *first = NULL;
-    bool used = false, formed = false;
+    bool used = !strcmp(key, "stop") && points_meet_boundaries(world), formed = used;
     unsigned forms = 0;
     for (int r = 0; r < brunt_contact_row_count; r++) {
         const brunt_contact_row *row = brunt_contact_rows[r];
@@ -242,6 +251,7 @@ static void fill_keys(scene_reader *reader, scene_node *node) {
     contact->tolerance = take(reader, node, "tolerance", contact->tolerance);
     contact->iterations = (int)take(reader, node, "iterations", -1);
     contact->touch = (brunt_touch_kind)(int)take(reader, node, "touch", contact->touch);
+    contact->stop = (brunt_stop_kind)(int)take(reader, node, "stop", contact->stop);
     contact->distance = take(reader, node, "distance", 0);
     contact->stiffness = take(reader, node, "stiffness", 0);
     contact->penalty = take(reader, node, "penalty", 0);

@@ -309,8 +309,8 @@ void brunt_fill_world(scene_reader *reader) {
     fill_materials(reader);
     brunt_fill_bodies(reader);
     fill_detonations(reader);
-    brunt_fill_contact(reader);
     brunt_fill_boundaries(reader);
+    brunt_fill_contact(reader);
     if (loads) brunt_fill_fields(reader, loads, "loads", 0, world);
     brunt_check_scheme(reader);
 }

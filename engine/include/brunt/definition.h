@@ -96,6 +96,10 @@ typedef enum brunt_augury_form { BRUNT_AUGURY_FORMS(BRUNT_AUGURY_VALUE) } brunt_
 // lost. Of node to facet.
 typedef enum brunt_touch_kind { BRUNT_TOUCH_ELASTIC, BRUNT_TOUCH_INELASTIC } brunt_touch_kind;
 
+// How material points are stopped by boundaries and facets, and by those of other bodies where surfaces meet: within a
+// step, at zero gap, or by springs that the overlap pushes in. Of explicit steps.
+typedef enum brunt_stop_kind { BRUNT_STOP_HARD, BRUNT_STOP_SPRING } brunt_stop_kind;
+
 // Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
 typedef struct brunt_pair_def {
     char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
@@ -115,6 +119,7 @@ typedef struct brunt_contact_def {
     double cell;      // [m] >= 0 of the contact grid; 0 (default) = the mean surface edge (published: twice that)
     brunt_transfer transfer; // of the published form: BRUNT_PIC or BRUNT_APIC (default)
     brunt_touch_kind touch;  // of node to facet; default elastic
+    brunt_stop_kind stop;    // of material points; default hard
     // Of barriers and penalties.
     double distance;  // [m] >= 0: gaps beyond it know nothing of each other; 0 (default) = a tenth of the shortest edge
                       // or spacing of particles, of penalties nothing: surfaces push where they overlap
