@@ -30,6 +30,7 @@ void brunt_barrier_free(brunt_barrier *b) {
         brunt_free(r->feature), brunt_free(r->edge), brunt_free(r->vertex), brunt_free(r->contact);
     }
     brunt_free(b->workspace), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
+    brunt_free(b->felt), brunt_free(b->felt_before);
     brunt_free(b->kept);
     sets_free(&b->sets), sets_free(&b->lagged_sets);
     brunt_colours_free(&b->colours), brunt_colours_free(&b->lagged_colours);

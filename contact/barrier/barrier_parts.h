@@ -45,6 +45,14 @@ typedef struct barrier_rub {
     double energy;  // [J] where it was asked for last
 } barrier_rub;
 
+// That of a contact where friction that follows what presses was looked at last, to be known by where contacts are
+// found anew.
+typedef struct barrier_felt {
+    int32_t place[BRUNT_CLOSEST_PLACES], law;
+    bool edges;
+    double slip[3], part[3];
+} barrier_felt;
+
 // What a vertex keeps of a body or a plane (-2 - its number) that it touches; force 0: it touches nothing there.
 enum { BARRIER_KEPT = 3 };
 typedef struct barrier_kept {
@@ -155,8 +163,11 @@ struct brunt_barrier {
     barrier_rub *rub;   // of `lagged`
     barrier_kept *kept; // BARRIER_KEPT of each vertex, where load steps keep slips
     bool keeps;
-    bool live; // friction follows normal forces and directions as they are, not as they were at the last lag
-    size_t rub_capacity, kept_capacity;
+    bool live;  // friction follows normal forces and directions as they are, not as they were at the last lag
+    bool tries; // and what it is at a place that is tried is asked for
+    barrier_felt *felt, *felt_before; // meanwhile: of `lagged` where that was looked at last, and room
+    int64_t felt_count;
+    size_t rub_capacity, kept_capacity, felt_capacity, felt_before_capacity;
     barrier_sets sets, lagged_sets;
     brunt_colours colours, lagged_colours;
 };
@@ -251,7 +262,9 @@ void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, cons
                           double *hessian);
 
 // The derivative of the force that friction has where normal forces and directions follow u, by places: not symmetric.
-void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double *u, double *tangent);
+// `part`: that of the greatest force, as of `barrier_slip_hessian`.
+void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
+                          double *tangent);
 
 // --- from load step to load step (barrier_memory.c)
 // How far the surfaces of a contact had given before the step [m]; 0: nothing is kept.

@@ -68,8 +68,9 @@ double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, con
 
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]) {
     const slip_law s = slip_at(b, c, u);
-    const double scale = greatest_force(b, c) * s.ratio;
-    for (int k = 0; k < 3; k++) force[k] = -scale * s.y[k];
+    const double greatest = greatest_force(b, c), scale = greatest * s.ratio;
+    const double *part = b->live ? b->rub[c - b->lagged.contact].part : NULL;
+    for (int k = 0; k < 3; k++) force[k] = part ? -greatest * part[k] : -scale * s.y[k];
 }
 
 void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient) {
@@ -129,9 +130,12 @@ void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const
     for (int k = 0; k < 3; k++) rub->part[k] /= sqrt(square);
 }
 
-// g_i = w_i f of place i, f = F r(|y|) y with F = mu N: dg_i = dw_i f + w_i (dF r y + F d(r y)). The first place is a
-// point, w = 1, so that its rows of the Hessian of d are dn, and n times those of the others their dw.
-void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double *u, double *tangent) {
+// g_i = w_i f of place i, f = F r(|y|) y with F = mu N: dg_i = dw_i f + w_i (dF w + F d(r y)), where d(r y) is that of
+// the smooth form above, with w the force that is an unknown of its own: the true derivative where w = r y, and no wall
+// where a slip turns round. The first place is a point, w = 1, so that its rows of the Hessian of d are dn, and n times
+// those of the others their dw.
+void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
+                          double *tangent) {
     const int dim = b->dim, places = c->at.places, rows = places * dim;
     const slip_law s = slip_at(b, c, u);
     const double *n = c->at.n, greatest = greatest_force(b, c), slope = barrier_contact_force_slope(b, c),
@@ -141,8 +145,8 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
     brunt_closest_hessian(&c->at, dim, 0, 1, turn);
     for (int i = 0; i < places; i++) barrier_move(b, c->place[i], u, move[i]);
     barrier_slip_of(b, c, u, slip);
-    // d(r y) = r (dy + (r'/r) y (y . dy) / |y|), and r' / r = -(1/r)' r
-    const double bend = s.size > 0 ? s.ratio * s.bend / s.size : 0;
+    // d(r y) = r (dy - (1/r)' w (y . dy) / |y|)
+    const double bend = s.size > 0 ? s.bend / s.size : 0;
     for (int j = 0; j < places; j++)
         for (int l = 0; l < dim; l++) {
             const int column = j * dim + l;
@@ -164,7 +168,7 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
             const double dF = mu * slope * c->at.w[j] * n[l];
             for (int k = 0; k < dim; k++) {
                 const double f = greatest * s.ratio * s.y[k],
-                             df = dF * s.ratio * s.y[k] + greatest * s.ratio * (dy[k] - bend * along * s.y[k]);
+                             df = dF * part[k] + greatest * s.ratio * (dy[k] - bend * along * part[k]);
                 for (int i = 0; i < places; i++) tangent[(i * dim + k) * rows + column] = c->at.w[i] * df + dw[i] * f;
             }
         }

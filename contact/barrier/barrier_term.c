@@ -153,7 +153,63 @@ double brunt_barrier_bound(const brunt_barrier *b) {
     return sum;
 }
 
-void brunt_barrier_follow(brunt_barrier *b, bool live) { b->live = live; }
+// ------------------------------------------------------------------------------ friction that follows what presses
+
+void brunt_barrier_follow(brunt_barrier *b, bool live) { b->live = live, b->tries = false, b->felt_count = 0; }
+
+static bool felt_of(const barrier_felt *f, const barrier_contact *c) {
+    return f->law == c->law && f->edges == (c->threshold > 0) && !memcmp(f->place, c->place, sizeof f->place);
+}
+
+static bool comes_before(const barrier_felt *f, const barrier_contact *c) {
+    const bool edges = c->threshold > 0;
+    return f->edges != edges ? edges : f->place[0] < c->place[0];
+}
+
+// Slips and parts of the greatest force of contacts that were there at the last look become what follows from those, as
+// `rub` does in the potential; of others they are as at u. Lists have the order of their points, then of their edges.
+static void feel(const brunt_barrier *b, const double *u) {
+    int64_t from = 0;
+    for (int64_t i = 0; i < b->lagged.count; i++) {
+        const barrier_contact *c = &b->lagged.contact[i];
+        barrier_rub *rub = &b->rub[i];
+        while (from < b->felt_count && comes_before(&b->felt[from], c)) from++;
+        int64_t at = from;
+        while (at < b->felt_count && b->felt[at].place[0] == c->place[0] && !felt_of(&b->felt[at], c)) at++;
+        if (at == b->felt_count || b->felt[at].place[0] != c->place[0]) continue;
+        memcpy(rub->slip, b->felt[at].slip, sizeof rub->slip), memcpy(rub->part, b->felt[at].part, sizeof rub->part);
+        barrier_slip_follow(b, c, u, rub);
+    }
+}
+
+// Keeps what was felt at u; friction there is that of its slips.
+static int keep_felt(brunt_barrier *b, const double *u, brunt_error *error) {
+    feel(b, u);
+    if (BRUNT_CAPACITY(b->felt_before, (size_t)b->lagged.count + 1, 0, "places that rub", error)) return BRUNT_FAILED;
+    barrier_felt *felt = b->felt_before;
+    for (int64_t i = 0; i < b->lagged.count; i++) {
+        const barrier_contact *c = &b->lagged.contact[i];
+        felt[i].law = c->law, felt[i].edges = c->threshold > 0;
+        memcpy(felt[i].place, c->place, sizeof felt[i].place);
+        memcpy(felt[i].slip, b->rub[i].slip, sizeof felt[i].slip);
+        memcpy(felt[i].part, b->rub[i].part, sizeof felt[i].part);
+        barrier_slip_begin(b, c, u, &b->rub[i]);
+    }
+    const size_t capacity = b->felt_before_capacity;
+    b->felt_before = b->felt, b->felt_before_capacity = b->felt_capacity;
+    b->felt = felt, b->felt_capacity = capacity;
+    b->felt_count = b->lagged.count;
+    return BRUNT_OK;
+}
+
+// Places that are tried have the forces that are unknowns of their own: those of their slips leap to and fro.
+static void friction_try(void *self, double share) {
+    brunt_barrier *b = self;
+    (void)share;
+    b->tries = b->live;
+}
+
+// ------------------------------------------------------------------------------------------------ its term
 
 typedef struct slip_work {
     brunt_barrier *b;
@@ -169,7 +225,8 @@ static void follow_slips(void *context, int64_t begin, int64_t end, int worker) 
 static int friction_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     brunt_barrier *b = self;
     slip_work work = {b, u};
-    if (b->live) return p ? BRUNT_OK : brunt_barrier_lag(b, team, u, error);
+    b->tries = false;
+    if (b->live) return p ? BRUNT_OK : brunt_barrier_lag(b, team, u, error) || keep_felt(b, u, error);
     if (!p) brunt_parallel(team->threads, b->lagged.count, BARRIER_GRAIN, follow_slips, &work, team->timer);
     return brunt_hand_on(error, &b->unsaid);
 }
@@ -195,6 +252,7 @@ static void friction_gradient(void *self, const brunt_team *team, const double *
     brunt_barrier *b = self;
     force_work work = {.b = b, .list = &b->lagged, .u = u, .friction = true};
     if (b->live && list_rubbing(b, team, u, &b->unsaid)) return;
+    if (b->tries) feel(b, u);
     add_forces(&work, team, g);
 }
 
@@ -220,6 +278,7 @@ brunt_term brunt_barrier_friction_term(brunt_barrier *barrier) {
         .gradient = friction_gradient,
         .stencils = friction_stencils,
         .hessian = friction_hessian,
+        .follow = friction_try,
     };
     return (brunt_term){&ops, barrier};
 }

@@ -80,14 +80,14 @@ static brunt_energy_sum energy_at(const newton_run *r, const double *u, int *out
     return sum;
 }
 
-// Its length.
-static double gradient_at(newton_run *r, const double *u) {
+// Its length. `asks`: how much is unbalanced is of interest, as it is not of places that are tried.
+static double gradient_at(newton_run *r, const double *u, bool asks) {
     double *g = r->n->gradient, square = 0;
     memset(g, 0, (size_t)unknowns(r) * sizeof *g);
     for (int t = 0; t < r->problem->count; t++)
         r->problem->terms[t].ops->gradient(r->problem->terms[t].self, r->team, u, g);
     gather(r, g);
-    if (r->options->unbalance) r->report->unbalance = r->options->unbalance(r->options->context, g);
+    if (asks && r->options->unbalance) r->report->unbalance = r->options->unbalance(r->options->context, g);
     for (int64_t i = 0; i < unknowns(r); i++) {
         if (r->problem->held && r->problem->held[i]) g[i] = 0;
         square += g[i] * g[i];
@@ -97,7 +97,7 @@ static double gradient_at(newton_run *r, const double *u) {
 
 static int take_gradient(newton_run *r) {
     const double *g = r->n->gradient;
-    r->length[r->report->iterations % MEMORY] = gradient_at(r, r->u);
+    r->length[r->report->iterations % MEMORY] = gradient_at(r, r->u, true);
     r->report->residual = 0, r->report->residual_dof = -1;
     for (int64_t i = 0; i < unknowns(r); i++) {
         if (!isfinite(g[i])) {
@@ -383,7 +383,7 @@ static int search_forces(newton_run *r, double *share) {
     for (int half = 0; half <= FEW_HALVINGS; half++, *share *= 0.5) {
         try_share(r, *share);
         follow_share(r, *share);
-        const double length = gradient_at(r, r->n->trial);
+        const double length = gradient_at(r, r->n->trial, false);
         const bool taken = half == 0 && small(r);
         if (!isfinite(length) || !(taken || length <= (1 - LEAST_DECREASE * *share) * longest)) continue;
         return go(r, half, *share);

@@ -8,8 +8,9 @@
 //
 // - where a round has not come nearer, friction is taken halfway, or a quarter of the way, to where it led
 // - once forces with what presses there are nearly balanced, friction follows what presses: Newton's method with the
-//   whole derivative, which is not symmetric, in 2 to 6 steps. Where that does not get there, as where corners of
-//   surfaces slide onto each other, rounds go on from where less is left
+//   whole derivative, which is not symmetric, in 2 to 12 steps: what slips is found with forces that are unknowns of
+//   their own (barrier_slip.c). Where that does not get there, as where corners of surfaces slide onto each other and
+//   no equilibrium is near, rounds go on from where less is left
 //
 // What is not balanced with friction taken where bodies are is no equilibrium, however well each potential is
 // minimised: a body that slides away, say. It is in vain to minimise the first ones well, while bodies that only

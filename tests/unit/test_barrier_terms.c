@@ -110,6 +110,48 @@ START_TEST(friction_that_follows_has_its_derivative) {
 }
 END_TEST
 
+// A point slides on a flat surface; friction that follows what presses was looked at where it had slid one way, and is
+// tried where it has slid the other. The force, an unknown of its own, stays what it was, by w + dw of the smooth form,
+// and leaps once that place is looked at: its slope there is twice that of what has slipped on, which would be none.
+START_TEST(friction_that_turns_round_is_tried_with_its_force) {
+    barrier_case *c = case_begin(2);
+    const brunt_team team = {c->threads, NULL};
+    const double distance = 0.01, creep = 1e-3, way = 3 * creep, more = 1e-6;
+    case_polygon(c, 0, (double[][2]){{-1, 0}, {1, 0}, {0, -1}}, 3);
+    case_polygon(c, 1, (double[][2]){{0.1, 0.5 * distance}, {0.3, 1}, {-0.1, 1}}, 3);
+    case_pair(c, 0, 1, distance, 1e5)->friction = 0.3;
+    c->pair[0].slip_speed = creep / c->dt;
+    case_ready(c);
+    double *u = case_unknowns(c), *g = case_unknowns(c), force[4], pressed;
+    const brunt_term rub = brunt_barrier_friction_term(c->barrier), push = brunt_barrier_term(c->barrier);
+    const int32_t x = 2 * c->node[3];
+    case_look(c, u, NULL);
+    push.ops->gradient(push.self, &team, u, g);
+    pressed = -g[x + 1];
+    brunt_barrier_follow(c->barrier, true);
+    for (int k = 0; k < 4; k++) { // looked at on one side, tried on the other, looked at there, tried a little on
+        for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = k == 0 ? -way : k < 3 ? way : way + more;
+        if (k % 2)
+            rub.ops->follow(rub.self, 1);
+        else
+            ck_assert_int_eq(rub.ops->look(rub.self, &team, u, NULL, NULL), BRUNT_OK);
+        memset(g, 0, (size_t)c->nodes * 2 * sizeof *g);
+        rub.ops->gradient(rub.self, &team, u, g);
+        force[k] = g[x] / (0.3 * pressed);
+    }
+    ck_assert_double_gt(pressed, 0);
+    ck_assert_double_eq_tol(force[0], -1, 1e-12);
+    ck_assert_double_eq_tol(force[1], -1, 1e-12);
+    ck_assert_double_eq_tol(force[2], 1, 1e-12);
+    ck_assert_double_eq_tol(force[3], 1, 1e-12); // w + dw = 1 + 2 more / way, and no more than all of it
+    for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = way - more;
+    memset(g, 0, (size_t)c->nodes * 2 * sizeof *g);
+    rub.ops->gradient(rub.self, &team, u, g);
+    ck_assert_double_eq_tol(g[x] / (0.3 * pressed), 1 - 2 * more / way, 1e-3 * more / way);
+    free(u), free(g), case_end(c);
+}
+END_TEST
+
 // A point comes to a flat surface from three distances away to half of one, and moves along it on its way: in load
 // steps it rubs from where it met the surface, a fifth of that; in steps of time all of it is its speed.
 START_TEST(load_steps_rub_from_where_surfaces_meet) {
@@ -501,6 +543,7 @@ int main(void) {
     TCase *terms = tcase_create("terms");
     tcase_add_test(terms, derivatives_of_whole_terms);
     tcase_add_test(terms, friction_that_follows_has_its_derivative);
+    tcase_add_test(terms, friction_that_turns_round_is_tried_with_its_force);
     tcase_add_test(terms, load_steps_rub_from_where_surfaces_meet);
     tcase_add_test(terms, sums_are_constant_along_a_polygon);
     tcase_add_test(terms, sums_are_constant_along_a_triangulation);
