@@ -13,6 +13,7 @@ typedef struct brunt_ledger {
     double transfer, gravity_work; // [J]
     double scheme;                 // [J] taken by the integrator of implicit steps
     double barrier;                // [J] stored in barriers
+    double barrier_initial;        // [J] the same at the start
     double gravity_impulse[3], gravity_angular[3];
     brunt_damping_sums damping;
     double initial_energy, initial_kinetic; // [J]

@@ -57,7 +57,10 @@ static int account_barrier(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     brunt_term_sums sums;
     if (brunt_implicit_sums(m, m->body_terms, m->body_terms + 1, m->field.contact, &sums, error)) return BRUNT_FAILED;
-    if (world->clock.steps == 0) world->ledger.initial_energy += sums.before; // bodies that start near each other
+    if (world->clock.steps == 0) { // bodies that start near each other
+        world->ledger.initial_energy += sums.before;
+        world->ledger.barrier_initial = sums.before;
+    }
     world->ledger.scheme += sums.work - (sums.after - sums.before);
     world->ledger.barrier = sums.after;
     add_to_gradient(m);

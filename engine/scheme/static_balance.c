@@ -46,11 +46,15 @@ static int sum_body(const struct brunt_implicit *m, int k, body_sum *sum) {
     return bodies->mpm[i].index;
 }
 
-// `act`: what forces on all bodies, or those within them, add up to; what Newton's method leaves is beside that. A body
-// with next to no forces, a loose disk in a packing, has none that it resolves: what is left of them is told beside
+// `act`: what forces on all bodies, or those within them, add up to; what Newton's method leaves is beside that. What
+// has next to no forces, as a loose disk in a packing, has none that it resolves: what is left of them is told beside
 // all.
+static double resolved(const struct brunt_implicit *m, double all, double act) {
+    return all < RESOLVED * m->options.tolerance * act ? act : all;
+}
+
 static void take_body(struct brunt_implicit *m, int body, const body_sum *sum, double act) {
-    const double all = sum->all < RESOLVED * m->options.tolerance * act ? act : sum->all;
+    const double all = resolved(m, sum->all, act);
     const double share = act > m->scale.rounding ? part(sum->left, all) : 0;
     if (share <= m->balance.body) return;
     m->balance.body = share, m->balance.worst = body;
@@ -74,7 +78,7 @@ void brunt_static_take_balance(struct brunt_implicit *m) {
         const int body = sum_body(m, k, &sum);
         if (body >= 0) take_body(m, body, &sum, act);
     }
-    m->balance.all = act > m->scale.rounding ? part(whole.left, whole.all) : 0;
+    m->balance.all = act > m->scale.rounding ? part(whole.left, resolved(m, whole.all, act)) : 0;
 }
 
 bool brunt_world_balance(const brunt_world *world, brunt_balance *balance) {

@@ -52,9 +52,20 @@ static void take_stiffness(const brunt_world *world, struct brunt_implicit *m) {
         if (u->plane[w] >= 0) m->field.stiffness[u->plane[w]] = most;
 }
 
-// Forces within bodies as the step begins, which loads and reactions balance; loads at its end; and what rounding
-// makes: places are known to some roundings of their size, ways of surfaces to some of theirs.
-static void take_scale(struct brunt_implicit *m) {
+// [N] Surfaces that begin within the distance push each other apart: by a force that on its way stores what barriers
+// began with.
+static double pushes(const brunt_world *world) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    if (!m->contact.barrier || !(m->contact.distance > 0)) return 0;
+    if (world->clock.steps > 0) return world->ledger.barrier_initial / m->contact.distance;
+    const brunt_term *term = &m->term[m->body_terms];
+    return term->ops->energy(term->self, &m->team, m->field.u).value / m->contact.distance;
+}
+
+// Forces within bodies as the step begins, which loads and reactions balance; loads at its end, without any those that
+// push at the start; and what rounding makes: places are known to some roundings of their size, ways of surfaces to
+// some of theirs.
+static void take_scale(const brunt_world *world, struct brunt_implicit *m) {
     enum { ROUNDINGS = 10 };
     const int64_t all = brunt_implicit_components(m);
     double within = 0, loads = 0, rounding = 0;
@@ -66,7 +77,8 @@ static void take_scale(struct brunt_implicit *m) {
         rounding += m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
     }
     if (m->holds) rounding += brunt_boundary_rows_effort(&m->rows);
-    m->scale = (brunt_load_scale){.least = fmax(within, loads), .rounding = ROUNDINGS * DBL_EPSILON * rounding};
+    m->scale = (brunt_load_scale){.least = fmax(within, loads > 0 ? loads : pushes(world)),
+                                  .rounding = ROUNDINGS * DBL_EPSILON * rounding};
 }
 
 static const double STALLS = 0.5; // of what was left before
@@ -302,7 +314,7 @@ int brunt_static_begin(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     take_stiffness(world, m);
-    take_scale(m);
+    take_scale(world, m);
     memset(m->field.grounded, 1, (size_t)u->count);
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];

@@ -23,7 +23,7 @@ typedef struct brunt_proximal {
 
 // How large forces are of which load steps leave a part unbalanced.
 typedef struct brunt_load_scale {
-    double least;        // [N] of forces: those within bodies at the start of the step, or loads at its end
+    double least;        // [N] of forces: of those within bodies at the start, loads at the end, or what pushes
     double rounding;     // [N] that rounding of places makes
     double left, before; // [N] at the last place, and at the one before: 0 at first
 } brunt_load_scale;

@@ -85,10 +85,12 @@ static const brunt_saved clock_table[] = {
 };
 #define NEWTON(member) CLOCK(newton.member), CLOCK(newton_last.member)
 static const brunt_saved newton_table[] = {
-    LEDGER(scheme),           LEDGER(barrier),  NEWTON(steps),       NEWTON(iterations),
-    NEWTON(iterations_worst), NEWTON(halvings), NEWTON(projections), NEWTON(linear_iterations),
-    NEWTON(factorisations),   NEWTON(cuts),     NEWTON(residual),    NEWTON(least_gap),
-    NEWTON(least_part),       CLOCK(gap_told),  CLOCK(chatter_told), CLOCK(rubs_late),
+    LEDGER(scheme),         LEDGER(barrier),     LEDGER(barrier_initial),
+    NEWTON(steps),          NEWTON(iterations),  NEWTON(iterations_worst),
+    NEWTON(halvings),       NEWTON(projections), NEWTON(linear_iterations),
+    NEWTON(factorisations), NEWTON(cuts),        NEWTON(residual),
+    NEWTON(least_gap),      NEWTON(least_part),  CLOCK(gap_told),
+    CLOCK(chatter_told),    CLOCK(rubs_late),
 };
 #define ACCOUNT(member) BRUNT_SAVED(brunt_impulse_account, member)
 static const brunt_saved account_table[] = {ACCOUNT(impulse),     ACCOUNT(angular),       ACCOUNT(external_work),

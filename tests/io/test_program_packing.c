@@ -167,9 +167,10 @@ START_TEST(hard_packings_settle_or_say_why) {
 }
 END_TEST
 
-#define HEX                                                                                                            \
-    "run square.yaml -t 1 -q -o out --set bodies.grains.crowd.lattice=hex --set 'bodies.grains.size=0.65 mm' --set "   \
+#define HEXAGONAL                                                                                                      \
+    "--set bodies.grains.crowd.lattice=hex --set 'bodies.grains.size=0.65 mm' --set "                                  \
     "'bodies.top.shape.box={min: [0.1 mm, 27.4025 mm], max: [30.19 mm, 32.4025 mm]}' "
+#define HEX "run square.yaml -t 1 -q -o out " HEXAGONAL
 
 // The same of a hexagonal lattice, where what presses changes with friction everywhere: each settles, all carry what
 // presses them, and of what hardly rubs most slip. The lattice stands ten times the load, which the square one does
@@ -224,6 +225,33 @@ START_TEST(what_touches_nothing) {
     snprintf(words, sizeof words, apart, "2991.0269 Pa", "2991.0269 Pa");
     small_expect(words, 70, "The greatest force left is");
     ck_assert_int_eq(small_shell("grep -Eq \"body '(top|right)' at\" output"), 0);
+}
+END_TEST
+
+// Disks that begin nearer to each other than barriers reach, and plates that nothing pushes: they come apart in the
+// first load step, until next to nothing is left of what pushed, and stay there in the second.
+START_TEST(packings_without_loads_come_apart) {
+    static const char apart[] =
+        "run square.yaml -t 1 -q -o out --set time.steps=2 --set 'bodies.grains.size=0.65 mm' --set newton.cut=0 --set "
+        "'boundaries[2].traction=[0, 0]' --set 'boundaries[3].traction=[0, 0]' --set contact.friction=%g %s";
+    static const struct {
+        double friction;
+        const char *words;
+    } of[] = {{0.5, ""}, {0, HEXAGONAL}, {0.5, HEXAGONAL}};
+    char words[600];
+    double greatest[ROWS], body[ROWS], all[ROWS], iterations[ROWS], y[ROWS];
+    small_put("square.yaml", square);
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        snprintf(words, sizeof words, apart, of[k].friction, of[k].words);
+        small_expect(words, 0, NULL);
+        const int last = read_column("out", "links.greatest", greatest) - 1;
+        read_column("out", "balance.body", body), read_column("out", "balance.all", all);
+        read_column("out", "newton.iterations", iterations), read_column("out", "body.top.position_y", y);
+        ck_assert_double_lt(greatest[last], 1e-4);
+        ck_assert(body[last] < 1e-7 && all[last] < 1e-7);
+        ck_assert(iterations[1] > 0 && iterations[last] == 0);
+        ck_assert_double_gt(y[last], y[0] + 5e-6);
+    }
 }
 END_TEST
 
@@ -296,6 +324,7 @@ int main(void) {
     tcase_add_test(tests, hard_hexagons_settle);
     tcase_add_test(tests, what_touches_nothing);
     tcase_add_test(tests, load_is_turned_round);
+    tcase_add_test(tests, packings_without_loads_come_apart);
     tcase_add_test(tests, what_slides_apart_is_told);
     tcase_add_loop_test(tests, pyramid_falls_below_its_friction, 0, 3);
     tcase_add_loop_test(tests, pyramid_of_six_stands_above_its_friction_alone, 0, 3);
