@@ -160,6 +160,15 @@ START_TEST(hard_packings_settle_or_say_why) {
     last = read_column("out", "links.count", count) - 1, read_column("out", "body.loose.position_y", y);
     ck_assert_double_ge(count[last], 20);
     ck_assert_double_lt(y[last], y[0] - 1e-4);
+    // One beside all others stays, and is named where what draws it draws it away.
+    ck_assert_int_eq(
+        small_shell("sed 's/center: .10.03 mm, 10.03 mm./center: [60 mm, 20 mm]/' rattler.yaml > free.yaml"), 0);
+    small_expect("run free.yaml -t 1 -q -o out", 0, NULL);
+    last = read_column("out", "links.count", count) - 1, read_column("out", "body.loose.position_y", y);
+    ck_assert(count[last] == 18 && y[last] == y[0]);
+    small_expect("run free.yaml -t 1 -q -o out --set 'newton={tolerance: 1e-8, iterations: 40, cut: 0}' --set "
+                 "'loads={gravity: [9.81, 0]}'",
+                 70, "body 'loose' at");
     small_expect("run square.yaml -t 1 -q -o out --set bodies.grains.crowd.gap=0", 65, "bodies.grains.1 touches");
     small_expect("run square.yaml -t 1 -q -o out --set newton.cut=0 --set 'bodies.grains.crowd.radius=4 mm' --set "
                  "'bodies.grains.crowd.gap=2.03 mm'",
