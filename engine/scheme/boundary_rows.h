@@ -44,6 +44,7 @@ typedef struct brunt_boundary_rows {
     brunt_boundary_bounds *bounds; // of each body of points
     double *dense;
     double cell, dt; // [m], [s]
+    double known;    // [m/s] of gaps: what the last step of Newton's method may leave of them; 0: they close
     bool still;      // load steps: no inertia
     bool forces;     // there is no energy
     bool exact;      // ... and all tractions follow within Newton's method, each by what it moves (boundary_answer.c)

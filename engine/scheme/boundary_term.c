@@ -295,7 +295,7 @@ static bool unsettled(const brunt_boundary_rows *r, const double *u) {
         const double bound = p->rubs ? p->surface->def.friction * pressure : 0;
         bend = fmax(bend, fabs(bound - p->bound)), greatest = fmax(greatest, bound);
     }
-    return most > SETTLED || bend > SAME_BOUND * greatest;
+    return most > fmax(SETTLED, r->known * r->dt / r->cell) || bend > SAME_BOUND * greatest;
 }
 
 bool brunt_boundary_rows_settle(brunt_boundary_rows *r, const double *u) {

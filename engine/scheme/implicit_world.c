@@ -82,6 +82,7 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
 // ------------------------------------------------------------------------------------------ what is small
 
 static const double SMALL_PART = 1e-2; // of the least gap
+static const double LAST = 0.1;       // of the tolerance: the last step of Newton's method, where there is no energy
 
 double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where) {
     struct brunt_implicit *m = context;
@@ -206,6 +207,7 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     for (int b = 0; b < bodies->count; b++)
         m->forces = m->forces || brunt_bodies_material(&world->bodies, b)->differences;
     m->rows.forces = m->forces;
+    m->rows.known = m->forces ? LAST * m->tolerance : 0;
     m->rows.answer_limit = BRUNT_BOUNDARY_ANSWER_LIMIT;
     if (m->forces && brunt_solver_iterates(world->settings.newton.solver))
         return brunt_fail(error, BRUNT_BAD_INPUT,
