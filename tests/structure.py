@@ -32,7 +32,7 @@ RANK = {folder: rank for rank, row in enumerate(ORDER) for folder in row}
 LIMITS = {
     "arrows against the order": 0, "circles of files": 0, "unknown folders": 0, "headers that shadow a system's": 0,
     "includes not from the root": 0, "members of the world": 13, "functions that take the world for one part": 0, "functions over 60 lines": 0,
-    "functions with over 7 parameters": 0, "lines of the largest file": 600, "files over 600 lines": 0,
+    "functions with over 7 parameters": 0, "lines of the largest file": 599, "files over 600 lines": 0,
     "tables that nothing counts": 0, "pointers to void pointers": 0, "lines that return -1": 0,
     "words not of plain English": 0, "words of before": 0,
     "lines repeated in blocks of six": 0, "terms not found": 0,

@@ -13,13 +13,16 @@ void brunt_condition_reflect(bool axisymmetric, const double position[3], double
     if (fabs(position[0]) <= 1e-9 * h) now[0] = 0;
 }
 
-// A node of a slot gets a velocity, components of it are held, and what moves at `rest` is recorded; x [m]: its place.
-static void hold_node(brunt_body *body, int32_t s, int node, const double now[3], const double rest[3], unsigned held,
+// Node `number` of the grid gets a velocity, components of it are held, and what moves at `rest` is recorded; x [m]: its
+// place.
+static void hold_node(brunt_body *body, int64_t number, const double now[3], const double rest[3], unsigned held,
                       brunt_impulse_account *account, double x[3]) {
     const brunt_grid *grid = &body->grid;
-    real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
+    const int32_t s = (int32_t)(number / BRUNT_BLOCK_NODES);
+    const int node = (int)(number % BRUNT_BLOCK_NODES);
+    real *n = grid->nodes + number * BRUNT_NODE_REALS;
     double J[3] = {0}, old[3] = {0};
-    grid->held[s * (int64_t)BRUNT_BLOCK_NODES + node] |= (uint8_t)held;
+    grid->held[number] |= (uint8_t)held;
     brunt_node_position(grid, grid->slots[s].coord, node, x);
     if (brunt_total_lagrangian(&body->particles)) brunt_extent_deformed(body, s, node, x);
     for (int a = 0; a < grid->dim; a++) {
@@ -81,8 +84,7 @@ static void follow(const brunt_held_grid *g, const image_class *c, int i, const 
         now[a] = (double)(c->sign[i][a] * c->node[0][BRUNT_NODE_VELOCITY + a]);
         moves[a] = (double)c->sign[i][a] * rest[a];
     }
-    hold_node(g->body, (int32_t)(number / BRUNT_BLOCK_NODES), (int)(number % BRUNT_BLOCK_NODES), now, moves, held, &own,
-              there);
+    hold_node(g->body, number, now, moves, held, &own, there);
     bear(g, c->at[i], own.impulse, there);
     for (int a = 0; a < 3; a++) J[a] = -(double)c->sign[i][a] * own.impulse[a];
     bear(g, c->at[0], J, x);
@@ -96,15 +98,15 @@ static void follow(const brunt_held_grid *g, const image_class *c, int i, const 
 void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double now[3],
                           const double rest[3], unsigned held, brunt_impulse_account *account) {
     const brunt_grid *grid = &g->body->grid;
-    const int32_t s = (int32_t)(slot - grid->slots);
-    const real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
+    const int64_t number = (slot - grid->slots) * BRUNT_BLOCK_NODES + node;
+    const real *n = grid->nodes + number * BRUNT_NODE_REALS;
     image_class c;
     double x[3], given[3] = {0}, moves[3] = {0};
     if (!g->symmetry_count) {
-        hold_node(g->body, s, node, now, rest, held, account, x);
+        hold_node(g->body, number, now, rest, held, account, x);
         return;
     }
-    find_images(g, s, node, &c);
+    find_images(g, (int32_t)(slot - grid->slots), node, &c);
     if (c.follows) return;
     for (int a = 0; a < grid->dim; a++) {
         const bool rests = c.sign[0][a] == 0;
@@ -112,7 +114,7 @@ void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int 
         moves[a] = rests ? 0 : rest[a];
         held &= rests ? ~(1u << a) : ~0u;
     }
-    hold_node(g->body, s, node, given, moves, held, account, x);
+    hold_node(g->body, number, given, moves, held, account, x);
     for (int i = 1; i < c.count; i++)
         if (c.node[i]) follow(g, &c, i, x, moves, held, account);
 }
