@@ -13,8 +13,8 @@ void brunt_condition_reflect(bool axisymmetric, const double position[3], double
     if (fabs(position[0]) <= 1e-9 * h) now[0] = 0;
 }
 
-// Node `number` of the grid gets a velocity, components of it are held, and what moves at `rest` is recorded; x [m]: its
-// place.
+// Node `number` of the grid gets a velocity, components of it are held, and what moves at `rest` is recorded; x [m]:
+// its place.
 static void hold_node(brunt_body *body, int64_t number, const double now[3], const double rest[3], unsigned held,
                       brunt_impulse_account *account, double x[3]) {
     const brunt_grid *grid = &body->grid;

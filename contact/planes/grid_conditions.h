@@ -25,5 +25,5 @@ struct brunt_held_grid {
     brunt_impulse_account *const *account; // of each
 };
 // Gives a node its velocity, holds components of it (bits), and records what moves at `rest`.
-void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double now[3], const double rest[3],
-                          unsigned held, brunt_impulse_account *account);
+void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double now[3],
+                          const double rest[3], unsigned held, brunt_impulse_account *account);

@@ -50,9 +50,9 @@ typedef struct brunt_boundary_rows {
     bool exact;      // ... and all tractions follow within Newton's method, each by what it moves (boundary_answer.c)
     int row_count;
     int answer_limit; // rows up to which they do
-    double *answer;  // room for that
-    int64_t reached; // boundary particles with a distance
-    bool any_leave;  // surfaces that material may leave
+    double *answer;   // room for that
+    int64_t reached;  // boundary particles with a distance
+    bool any_leave;   // surfaces that material may leave
     // One that material comes to from where no node of it is, one that it went through, NULL: none.
     const brunt_boundary_surface *unseen, *passed;
     const brunt_boundary_surface *too_far; // turns by too much within the step

@@ -82,7 +82,7 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
 // ------------------------------------------------------------------------------------------ what is small
 
 static const double SMALL_PART = 1e-2; // of the least gap
-static const double LAST = 0.1;       // of the tolerance: the last step of Newton's method, where there is no energy
+static const double LAST = 0.1;        // of the tolerance: the last step of Newton's method, where there is no energy
 
 double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where) {
     struct brunt_implicit *m = context;

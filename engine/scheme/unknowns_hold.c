@@ -101,7 +101,8 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
     for (int k = 0; k < world->boundaries.sets.count; k++) hold_group(u, world, k, dt);
     // What is on a plane with images rests there, whatever else would move it: they would not be opposite.
     for (int m = 0; m < world->boundaries.symmetry_count; m++)
-        if (world->boundaries.symmetry[m].boundary >= 0) hold_points(u, world, world->boundaries.symmetry[m].boundary, dt);
+        if (world->boundaries.symmetry[m].boundary >= 0)
+            hold_points(u, world, world->boundaries.symmetry[m].boundary, dt);
     for (int w = 0; w < world->boundaries.boundary_count; w++)
         if (world->boundaries.boundary[w].kind->hold_at) hold_meshes(u, world, w, dt);
     for (int w = world->boundaries.boundary_count - 1; w >= 0; w--) // as in explicit steps the last one has it

@@ -42,8 +42,7 @@ static void find_leader(brunt_unknowns *u, const brunt_world *world, int i, int3
     for (int k = 0; k < count; k++) {
         const int32_t other = k ? brunt_unknowns_node_at(u, &world->bodies, i, image[k]) : n;
         bool before = other >= 0;
-        for (int m = 0; m < symmetry_count; m++)
-            before = before && brunt_symmetry_before(&symmetry[m], image[k]) >= 0;
+        for (int m = 0; m < symmetry_count; m++) before = before && brunt_symmetry_before(&symmetry[m], image[k]) >= 0;
         if (before) front = other;
         others += k && other >= 0;
         if (other >= 0 && other < leader) leader = other, from = k;

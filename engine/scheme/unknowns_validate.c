@@ -36,7 +36,8 @@ static void validate_images(const brunt_unknowns *u) {
         const int32_t leader = images->leader[n];
         BRUNT_ASSERT(leader >= 0 && leader <= n && images->leader[leader] == leader);
         const int32_t front = images->front[n];
-        BRUNT_ASSERT(front >= 0 && front < u->count && images->front[front] == front && images->leader[front] == leader);
+        BRUNT_ASSERT(front >= 0 && front < u->count && images->front[front] == front &&
+                     images->leader[front] == leader);
     }
     for (int32_t i = 0; i < images->fold.count; i++) {
         const int32_t n = images->follower[i];

@@ -310,8 +310,8 @@ START_TEST(goes_to_and_fro) {
 }
 END_TEST
 
-// More rows than there is an answer of the factor for follow Newton's method as they were guessed, in more iterations, to
-// the same end.
+// More rows than there is an answer of the factor for follow Newton's method as they were guessed, in more iterations,
+// to the same end.
 START_TEST(collapses_by_guesses) {
     const double side = _i ? -1 : 1, mu = 0.402, end = 0.04;
     brunt_world *world[2];
@@ -326,8 +326,10 @@ START_TEST(collapses_by_guesses) {
     double *x = world_field(world[0], 0, "position"), *y = world_field(world[1], 0, "position"), off = 0;
     for (int64_t i = 0; i < 3 * brunt_body_particles(world[0], 0); i++) off = fmax(off, fabs(x[i] - y[i]));
     const double P = world_boundary(world[0], 0).impulse[1], Q = world_boundary(world[1], 0).impulse[1];
-    printf("  %.0f and %.0f steps, %.1f and %.1f iterations a step, %.0f and %.0f cuts: %.1e m apart, floor %.2e of its impulse\n",
-           (double)n[0].steps, (double)n[1].steps, (double)n[0].iterations / (double)n[0].steps, (double)n[1].iterations / (double)n[1].steps, (double)n[0].cuts, (double)n[1].cuts, off, Q / P - 1);
+    printf("  %.0f and %.0f steps, %.1f and %.1f iterations a step, %.0f and %.0f cuts: %.1e m apart, floor %.2e of "
+           "its impulse\n",
+           (double)n[0].steps, (double)n[1].steps, (double)n[0].iterations / (double)n[0].steps,
+           (double)n[1].iterations / (double)n[1].steps, (double)n[0].cuts, (double)n[1].cuts, off, Q / P - 1);
     ck_assert_double_gt(n[1].iterations, 2 * n[0].iterations);
     ck_assert_double_le(n[1].iterations, 20 * n[1].steps); // 22 where gradients may grow while they do not halve
     ck_assert_double_le(off, 1e-8);

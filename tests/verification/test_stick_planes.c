@@ -357,13 +357,13 @@ typedef struct grip {
     bool across, along;
 } grip;
 static const grip grips[] = {
-    {0.5, 1.5, true, true},    // the first nodes before the plane, whose images follow
-    {-0.5, 1.5, true, true},   // those on it as well, which rest
-    {-9, 1.5, true, true},     // and what is behind it, which is images
-    {-0.5, 0.5, true, true},   // what is on it alone
-    {0, 2, true, true},        // from it on, to a line of the grid
-    {-9, -0.5, true, true},    // what is behind it alone: nothing of the block is there
-    {-0.5, 1.5, true, false},  {-0.5, 1.5, false, true}, {1.5, 9, true, true}, // far from it
+    {0.5, 1.5, true, true},  // the first nodes before the plane, whose images follow
+    {-0.5, 1.5, true, true}, // those on it as well, which rest
+    {-9, 1.5, true, true},   // and what is behind it, which is images
+    {-0.5, 0.5, true, true}, // what is on it alone
+    {0, 2, true, true},      // from it on, to a line of the grid
+    {-9, -0.5, true, true},  // what is behind it alone: nothing of the block is there
+    {-0.5, 1.5, true, false}, {-0.5, 1.5, false, true}, {1.5, 9, true, true}, // far from it
 };
 enum { GRIPS = sizeof grips / sizeof *grips };
 static const brunt_condition mirrors[] = {BRUNT_STICK, BRUNT_SLIP, BRUNT_SYMMETRY};
@@ -411,14 +411,18 @@ START_TEST(held_before_it) {
     const brunt_momentum m = world_momentum(world);
     const brunt_energy e = world_energy(world);
     double work = 0, size = 0;
-    for (int a = 0; a < 3; a++) work += r->component[a] ? r->velocity[a] * hold.impulse[a] : 0, size += fabs(hold.impulse[a]);
+    for (int a = 0; a < 3; a++)
+        work += r->component[a] ? r->velocity[a] * hold.impulse[a] : 0, size += fabs(hold.impulse[a]);
     printf("  %dD along %d, side %+g, plane %d, %g to %g%s: images off by %.1e of %.1e m/s, drift %.1e %.1e, "
            "energy %+.1e, work %.4g J off by %.1e\n",
-           l->dimension, l->axis, l->side, (int)mirror, g->low, g->high, scheme ? scheme == 1 ? ", Euler" : ", Newmark" : "", worst, most,
-           m.linear_drift, m.angular_drift, e.error_relative, work, e.external_work - work);
+           l->dimension, l->axis, l->side, (int)mirror, g->low, g->high,
+           scheme ? scheme == 1 ? ", Euler" : ", Newmark" : "", worst, most, m.linear_drift, m.angular_drift,
+           e.error_relative, work, e.external_work - work);
     const bool nothing = g->high < 0 || (g->high < 1 && mirror == BRUNT_STICK);
-    if (nothing) ck_assert_double_eq(size, 0);
-    else ck_assert_double_gt(size, 1);
+    if (nothing)
+        ck_assert_double_eq(size, 0);
+    else
+        ck_assert_double_gt(size, 1);
     ck_assert(nothing || scheme || most > 0.1);
     ck_assert_double_le(worst, ROUNDING);
     ck_assert_double_le(m.linear_drift, 100 * ROUNDING);
@@ -444,8 +448,7 @@ START_TEST(later_ones_hold) {
     brunt_world *world = world_from(&def);
     world_steps(world, 5);
     const int along = l->dimension == 2 ? 1 - l->axis : (l->axis + 1) % 3;
-    const double first = world_boundary(world, 1).impulse[along],
-                 second = world_boundary(world, 2).impulse[along];
+    const double first = world_boundary(world, 1).impulse[along], second = world_boundary(world, 2).impulse[along];
     printf("  %dD along %d, side %+g%s%s: %.3g and %.3g N s\n", l->dimension, l->axis, l->side,
            implicit ? ", implicit" : "", swapped ? ", swapped" : "", first, second);
     const brunt_symmetry_plane *p = &world->boundaries.symmetry[0];
@@ -456,7 +459,8 @@ START_TEST(later_ones_hold) {
             int32_t at[3];
             brunt_node_coordinates(grid, s, node, at);
             if (brunt_symmetry_before(p, at) == 1 && n[0] > 0)
-                ck_assert_double_eq((double)n[BRUNT_NODE_VELOCITY + along], (double)(real)(l->side * (swapped ? 0.3 : 0.1)));
+                ck_assert_double_eq((double)n[BRUNT_NODE_VELOCITY + along],
+                                    (double)(real)(l->side * (swapped ? 0.3 : 0.1)));
         }
     if (implicit) ck_assert_double_eq(first, 0);
     ck_assert_double_gt(l->side * (first + second), 0);
