@@ -62,6 +62,7 @@ MODELS = {
 FITTED = ("points 2D", "tri3", "points 3D", "tet4")  # by every solver and step; of the others pcg at c dt/h = 10
 BLOCKS = {"points 2D": 25, "tri3": 7, "points 3D": 125, "tet4": 15}  # that a node couples with, within
 PASSES = ("evaluate", "matrix", "solve", "limit", "search")
+PARTS = {"solve": ("factor", "solve")}  # of a pass of the table; else itself
 SOLVERS = ("direct", "pcg", "matrix-free")
 
 
@@ -127,7 +128,8 @@ def row(model, nodes, courant, solver, threads, summary):
     count = newton["iterations"]
     busy = {p["name"]: max(p["thread_s"]) if threads > 1 and p["name"] in ("evaluate", "matrix") else p["seconds"]
             for p in summary["profile"]["passes"]}
-    passes = ["%.3g" % (1e3 * share(summary) * busy.get(name, 0) / count) for name in PASSES]
+    passes = ["%.3g" % (1e3 * share(summary) * sum(busy.get(part, 0) for part in PARTS.get(name, (name,))) / count)
+              for name in PASSES]
     whole = 1e3 * share(summary) * summary["step_s"] / count
     return [model, str(nodes), "%g" % courant, solver, str(threads), "%g" % (count / newton["steps"]),
             "%.3g" % (newton["linear_iterations"] / count)] + passes + [

@@ -183,6 +183,7 @@ static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
 // The step that the factor gives.
 static brunt_linear_status solve_with_factor(newton_run *r) {
     brunt_newton *n = r->n;
+    phase(r, BRUNT_NEWTON_SOLVE);
     for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = -n->gradient[i];
     const brunt_linear_status status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
     if (status == BRUNT_LINEAR_DONE && r->problem->fold) brunt_fold_spread(r->problem->fold, r->problem->dim, n->step);
@@ -194,6 +195,7 @@ static brunt_linear_status factor(newton_run *r) {
     brunt_newton *n = r->n;
     const brunt_block_matrix *matrix = system_of(r);
     brunt_linear_status status = BRUNT_LINEAR_DONE;
+    phase(r, BRUNT_NEWTON_FACTOR);
     if (n->analysed != matrix->pattern) {
         n->analysed = 0;
         status = brunt_linear_analyse(&n->linear, r->team, matrix, r->error);
@@ -210,8 +212,7 @@ static brunt_linear_status solve(newton_run *r) {
     brunt_newton *n = r->n;
     brunt_linear_status status = factor(r);
     if (status != BRUNT_LINEAR_DONE) return status;
-    n->linear.report.iterations = 0;
-    status = solve_with_factor(r);
+    n->linear.report.iterations = 0, status = solve_with_factor(r);
     r->report->linear_iterations += n->linear.report.iterations;
     return status;
 }
@@ -244,6 +245,7 @@ static brunt_linear_status sweep(newton_run *r) {
         for (int t = 0; t < r->problem->count; t++) {
             const brunt_term *term = r->problem->terms + t;
             if (!term->ops->sweep) continue;
+            phase(r, BRUNT_NEWTON_SWEEP);
             r->endless =
                 term->ops->sweep(term->self, r->u, n->step, n->gradient, &response, &changed, r->error) != BRUNT_OK;
             if (r->endless) return BRUNT_LINEAR_FAILED;
@@ -317,7 +319,6 @@ static int find_step(newton_run *r) {
             raise_matrix(r, shift, next);
             shift = next, r->report->shifts++;
         }
-        phase(r, BRUNT_NEWTON_SOLVE);
         const brunt_linear_status status = try_matrix(r);
         if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
         if (status != BRUNT_LINEAR_INDEFINITE)
@@ -495,7 +496,7 @@ static int check_stable(newton_run *r) {
     if (fill_matrix(r, false, false)) return BRUNT_FAILED;
     hold_matrix(r);
     raise_matrix(r, 0, SPARE);
-    phase(r, BRUNT_NEWTON_SOLVE);
+    phase(r, BRUNT_NEWTON_FACTOR);
     if (open_solver(r, &brunt_linear_direct)) return BRUNT_FAILED;
     const brunt_linear_status status = factor(r);
     if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
@@ -575,7 +576,6 @@ int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_
     for (int64_t i = 0; i < unknowns(&run); i++)
         if (!problem->held[i]) newton->gradient[i] += p[i];
     hold_matrix(&run);
-    phase(&run, BRUNT_NEWTON_SOLVE);
     const brunt_linear_status status = solve(&run);
     lead->factorisations = report.factorisations;
     if (status != BRUNT_LINEAR_DONE) return BRUNT_FAILED;

@@ -15,7 +15,9 @@
 typedef enum brunt_newton_phase {
     BRUNT_NEWTON_EVALUATE, // look, gradient
     BRUNT_NEWTON_MATRIX,   // pattern, Hessian
-    BRUNT_NEWTON_SOLVE,    // analysis, factor, solution
+    BRUNT_NEWTON_FACTOR,   // analysis, factor; the preconditioner of an iterative solver
+    BRUNT_NEWTON_SOLVE,    // solution
+    BRUNT_NEWTON_SWEEP,    // what terms keep beside the unknowns follows them
     BRUNT_NEWTON_LIMIT,    // look along the step, limits of terms
     BRUNT_NEWTON_SEARCH,   // energies along the step
     BRUNT_NEWTON_PHASES

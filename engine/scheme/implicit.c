@@ -8,6 +8,7 @@
 
 static bool always(const brunt_world *world) { return world != NULL; }
 static bool particles(const brunt_world *world) { return world->bodies.mpm_count > 0; }
+static bool pieces(const brunt_world *world) { return world->boundaries.surfaces.count > 0; }
 
 static double all_bodies(const brunt_world *world, const brunt_body *body) {
     return body ? 1 : (double)world->bodies.count;
@@ -126,7 +127,9 @@ const brunt_pass_row brunt_implicit_passes[] = {
     {BRUNT_PASS_WHOLE, "newton",   "node",     always,    brunt_pass_newton,         all_unknowns,  NULL},
     {BRUNT_PASS_INNER, "evaluate", "point",    always,    NULL,                      all_points,    NULL},
     {BRUNT_PASS_INNER, "matrix",   "point",    always,    NULL,                      all_points,    NULL},
+    {BRUNT_PASS_INNER, "factor",   "node",     always,    NULL,                      all_unknowns,  NULL},
     {BRUNT_PASS_INNER, "solve",    "node",     always,    NULL,                      all_unknowns,  NULL},
+    {BRUNT_PASS_INNER, "sweeps",   "node",     pieces,    NULL,                      all_unknowns,  NULL},
     {BRUNT_PASS_INNER, "limit",    "point",    always,    NULL,                      all_points,    NULL},
     {BRUNT_PASS_INNER, "search",   "point",    always,    NULL,                      all_points,    NULL},
     {BRUNT_PASS_WHOLE, "commit",   "point",    always,    commit,                    all_points,    NULL},

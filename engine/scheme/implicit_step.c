@@ -253,7 +253,7 @@ static void follow_phase(void *context, brunt_newton_phase phase) {
 }
 
 void brunt_implicit_follow(brunt_plan *plan) {
-    static const char *const names[] = {"evaluate", "matrix", "solve", "limit", "search"};
+    static const char *const names[] = {"evaluate", "matrix", "factor", "solve", "sweeps", "limit", "search"};
     _Static_assert(BRUNT_COUNT(names) == BRUNT_NEWTON_PHASES, "a pass for each phase");
     struct brunt_implicit *m = plan->implicit;
     for (int p = 0; p < plan->pass_count; p++)
