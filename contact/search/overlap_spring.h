@@ -1,6 +1,6 @@
 // Material points that overlap what they touch are pushed out by springs, where a scene asks for that: what a spring
-// takes it gives back, where a stop within one step takes the energy of half a cell, some of it in contact, most of it
-// in the transfer to the grid, which does not see what is that sudden.
+// takes it gives back, where a stop within one step loses the energy of a layer of cells, some of it in contact and
+// some in the transfer to the grid, which does not see what is that sudden.
 //
 // A point stands for a column of material, a cell long and m / (rho s) wide, s its spacing: k = m c^2 / (s h), c the
 // wave speed of the undeformed body. It is a constant, so that there is a potential, k d^2 / 2, and what is pressed
