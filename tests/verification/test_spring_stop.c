@@ -166,6 +166,16 @@ START_TEST(nothing_goes_through) {
 }
 END_TEST
 
+// A floor at y = 0, of a line or a plane.
+static void def_floor(brunt_world_def *def, bool line, double friction) {
+    if (!line) {
+        def_plane(def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, friction);
+        return;
+    }
+    def->surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def->surfaces);
+    def_line(def, -1, 0, 4, 0, BRUNT_SEPARATE)->friction = friction;
+}
+
 // A block that lies under its weight, let down slowly: p = rho g H, d = p h / (rho c^2), and the plane carries it.
 START_TEST(lies_as_deep_as_it_is_pressed) {
     const double h = 0.05, H = 0.4, g = 50;
@@ -173,12 +183,7 @@ START_TEST(lies_as_deep_as_it_is_pressed) {
     def_material(&def, "neo-hookean", DENSITY, YOUNG, 0);
     def.contact.stop = BRUNT_STOP_SPRING;
     def_box(&def, "block", XYZ(0, 0, 0), XYZ(0.4, H, 0));
-    if (_i) {
-        def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
-        def_line(&def, -1, 0, 2, 0, BRUNT_SEPARATE);
-    } else {
-        def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
-    }
+    def_floor(&def, _i, 0);
     def.gravity[1] = -g, def.gravity_ramp = 0.8;
     brunt_world *world = world_take(&def);
     world_until(world, 0.8);
@@ -239,12 +244,7 @@ START_TEST(rubs_as_it_presses) {
     def_material(&def, "neo-hookean", DENSITY, YOUNG, 0);
     def.contact.stop = BRUNT_STOP_SPRING;
     def_velocity(def_box(&def, "block", XYZ(0, 0, 0), XYZ(0.6, 0.2, 0)), 2, 0, 0);
-    if (_i) {
-        def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
-        def_line(&def, -1, 0, 4, 0, BRUNT_SEPARATE)->friction = mu;
-    } else {
-        def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, mu);
-    }
+    def_floor(&def, _i, mu);
     def.gravity[1] = -g;
     brunt_world *world = world_take(&def);
     const double mass = world_sums(world, 0).mass, t = 0.4;
