@@ -111,6 +111,8 @@ typedef struct brunt_constraint_set {
     size_t column_capacity;
     int32_t *column_first;
     size_t column_first_capacity;
+    int32_t *column_at; // of each group of points and node, while columns are filled: the next one
+    size_t column_at_capacity;
     double (*begun)[3]; // [m/s] of each node before the first sweep
     size_t begun_capacity;
     struct brunt_constraint_impulse {
@@ -156,9 +158,10 @@ int32_t brunt_constraints_entry(brunt_constraint_set *set, int32_t dof_node, dou
 // Gives the last point, when its entries are complete, a friction point to x: entries without weights, for the caller
 // to fill. The index of the first, or BRUNT_NONE: out of memory.
 int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double x[3], brunt_error *error);
-// Makes room for so many points and entries in all, which the caller then fills. BRUNT_OK, or BRUNT_FAILED: out of
-// memory.
-int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count, brunt_error *error);
+// Makes room for so many points, entries and degree-of-freedom nodes in all, which the caller then fills. BRUNT_OK, or
+// BRUNT_FAILED: out of memory.
+int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count, int32_t dof_count,
+                              brunt_error *error);
 // Whether a point has given an impulse: what lets go only by pushing.
 static inline bool brunt_constraint_acts(const brunt_constraint *constraint) {
     return constraint->least < 0 || constraint->normal_impulse > 0;

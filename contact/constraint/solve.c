@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "contact/constraint/columns.h"
 #include "contact/constraint/release.h"
 
 enum { GRAIN = 128 };
@@ -49,6 +50,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->dof_node);
     brunt_free(p->column);
     brunt_free(p->column_first);
+    brunt_free(p->column_at);
     brunt_free(p->begun);
     brunt_free(p->applied);
     brunt_free(p->changed);
@@ -97,9 +99,12 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x
     return first;
 }
 
-int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries, brunt_error *error) {
+int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries, int32_t dofs,
+                              brunt_error *error) {
     return BRUNT_CAPACITY(p->constraint, (size_t)points + 1, (size_t)p->constraint_count, "contact points", error) ||
                    BRUNT_CAPACITY(p->entry, (size_t)entries + 1, (size_t)p->entry_count, "entries of contact points",
+                                  error) ||
+                   BRUNT_CAPACITY(p->dof_node, (size_t)dofs + 1, (size_t)p->dof_node_count, "nodes that contact moves",
                                   error)
                ? BRUNT_FAILED
                : BRUNT_OK;
@@ -151,41 +156,12 @@ static void apply_transpose(const brunt_constraint *constraint, const brunt_cons
     for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + rise * constraint->facet[a];
 }
 
-static struct brunt_constraint_column column_of(int32_t constraint, const brunt_constraint_entry *entry) {
-    return (struct brunt_constraint_column){
-        constraint,
-        {entry->weight[0], entry->weight[1], entry->weight[2]},
-        {entry->height_gradient[0], entry->height_gradient[1], entry->height_gradient[2]}};
-}
-
-// Entries by dof_node, in the order of the points, each with that of its friction point.
-static int transpose(brunt_constraint_set *p, brunt_error *error) {
-    size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1,
-           points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
-    if (BRUNT_CAPACITY(p->column, entries, 0, "entries of contact points", error) ||
-        BRUNT_CAPACITY(p->column_first, dof_nodes + 1, 0, "nodes that contact moves", error) ||
-        BRUNT_CAPACITY(p->begun, dof_nodes, 0, "nodes that contact moves", error) ||
-        BRUNT_CAPACITY(p->applied, points, 0, "impulses of contact points", error) ||
-        BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error))
-        return BRUNT_FAILED;
-    int32_t *first = p->column_first;
-    memset(first, 0, (dof_nodes + 1) * sizeof(int32_t));
-    for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].dof_node + 2]++;
-    for (size_t s = 2; s <= dof_nodes; s++) first[s] += first[s - 1];
-    for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_constraint *constraint = &p->constraint[k];
-        const int32_t friction_point = p->constraint_count + constraint->friction_point - 1;
-        memcpy(p->applied[k].facet, constraint->facet, sizeof constraint->facet);
-        if (constraint->friction_point)
-            memcpy(p->applied[friction_point].facet, constraint->facet, sizeof constraint->facet);
-        for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
-            int32_t *at = &first[p->entry[e].dof_node + 1];
-            p->column[(*at)++] = column_of(k, &p->entry[e]);
-            if (constraint->friction_point)
-                p->column[(*at)++] = column_of(friction_point, &p->entry[e + constraint->count]);
-        }
-    }
-    return BRUNT_OK;
+static int reserve_sweeps(brunt_constraint_set *p, brunt_error *error) {
+    const size_t points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
+    return BRUNT_CAPACITY(p->begun, (size_t)p->dof_node_count + 1, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 // Effective mass of each point alone, without its images: half of a body is then solved as the whole is. Points that
@@ -571,7 +547,7 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     bool converges;
     p->sweeps = 0, p->levers = false;
     if (!p->constraint_count) return BRUNT_OK;
-    if (transpose(p, error)) return BRUNT_FAILED;
+    if (brunt_constraints_make_columns(p, threads, timer, error) || reserve_sweeps(p, error)) return BRUNT_FAILED;
     brunt_parallel(threads, (p->constraint_count + GRAIN - 1) / GRAIN, 1, weigh_constraints, p, timer);
     if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     if (!converges) {

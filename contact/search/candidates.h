@@ -58,7 +58,8 @@ typedef struct node_candidates {
     int masters_count;
     int32_t *dof_of; // of each node: its degree-of-freedom node, -1
     int32_t *first;  // of each node: its first constraint and first entry
-    size_t count_capacity, candidate_capacity, dof_of_capacity, first_capacity;
+    uint8_t *meets;  // of each node: it is in some of the constraints
+    size_t count_capacity, candidate_capacity, dof_of_capacity, first_capacity, meets_capacity;
 } node_candidates;
 
 typedef struct particle_candidate {

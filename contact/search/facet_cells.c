@@ -1,6 +1,7 @@
 // Facets by cell: a grid of cells, each with the facets within reach of it, made anew when things have moved.
 #include "contact/search/node_to_facet_parts.h"
 
+enum { CHUNK = 1024 };
 static const double MARGIN = 0.125; // mean edges: how far facets may move before the cells are made anew
 static const double CELL = 0.5;     // mean edges: of the cells that facets are found in ...
 static const double COARSE = 0.25;  // ... of how far they are looked for, where all is fast
@@ -98,6 +99,7 @@ static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f, br
     size_t cells = (size_t)f->cells.n[0] * (size_t)f->cells.n[1] * (size_t)f->cells.n[2];
     if (RESERVE(&f->cells, first, cells + 3, "cells of facets", error) ||
         RESERVE(&f->cells, x, s->node_count + 1, "places of nodes", error) ||
+        RESERVE(&f->cells, further, s->node_count / CHUNK + 1, "chunks of nodes", error) ||
         RESERVE(&f->cells, box, f->bodies.box_count + 1, "boxes of cells of facets", error))
         return BRUNT_FAILED;
     memset(f->cells.first, 0, (cells + 3) * sizeof *f->cells.first);
@@ -128,6 +130,38 @@ static bool boxes_hold(const brunt_contact_context *m, const brunt_node_to_facet
     return true;
 }
 
+typedef struct motion_job {
+    const brunt_contact_surface *surface;
+    const brunt_node_to_facet *f;
+    bool *further; // of each chunk of nodes: some are further than the cells allow
+} motion_job;
+
+static bool has_moved(const motion_job *j, int k, int32_t begin, int32_t end) {
+    const brunt_contact_surface *s = j->surface;
+    const double greatest = MARGIN * s->mean_edge, square = greatest * greatest;
+    bool further = false;
+    for (int32_t n = begin > s->node_range[k] ? begin : s->node_range[k]; n < end && n < s->node_range[k + 1]; n++) {
+        double d2 = 0;
+        for (int a = 0; a < 3; a++) d2 += (s->x[n][a] - j->f->cells.x[n][a]) * (s->x[n][a] - j->f->cells.x[n][a]);
+        further = further || d2 > square;
+    }
+    return further;
+}
+
+static void look_at_motion(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const motion_job *j = context;
+    const brunt_contact_surface *s = j->surface;
+    int k = 0;
+    for (int64_t c = begin; c < end; c++) {
+        const int32_t first = (int32_t)c * CHUNK, last = first + CHUNK;
+        j->further[c] = false;
+        while (s->node_range[k + 1] <= first) k++;
+        for (int body = k; body < s->fem_count && s->node_range[body] < last; body++)
+            if (s->active[body] && has_moved(j, body, first, last)) j->further[c] = true;
+    }
+}
+
 // Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are
 // near.
 static bool cells_hold(const brunt_contact_context *m, const brunt_node_to_facet *f, uint64_t pairs) {
@@ -135,15 +169,10 @@ static bool cells_hold(const brunt_contact_context *m, const brunt_node_to_facet
     if (!f->cells.made || f->cells.pair_count != f->bodies.pair_count || f->cells.pairs_key != pairs ||
         f->bodies.range > f->cells.range)
         return false;
-    const double greatest = MARGIN * s->mean_edge, square = greatest * greatest;
-    for (int k = 0; k < s->fem_count; k++) {
-        if (!s->active[k]) continue;
-        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            double d2 = 0;
-            for (int a = 0; a < 3; a++) d2 += (s->x[n][a] - f->cells.x[n][a]) * (s->x[n][a] - f->cells.x[n][a]);
-            if (d2 > square) return false;
-        }
-    }
+    const int64_t chunks = (s->node_count + CHUNK - 1) / CHUNK;
+    brunt_parallel(m->threads, chunks, 1, look_at_motion, &(motion_job){s, f, f->cells.further}, m->timer);
+    for (int64_t c = 0; c < chunks; c++)
+        if (f->cells.further[c]) return false;
     return boxes_hold(m, f);
 }
 

@@ -16,7 +16,7 @@ typedef struct search_job {
     const brunt_contact_context *m;
     brunt_node_to_facet *f;
     brunt_constraint_set *constraints;
-    int32_t entry_base, point_base;
+    int32_t dofs_before; // degree-of-freedom nodes that there were before those of the nodes
 } search_job;
 
 // Least velocity along the normal: to arrive at the surface, not past it. What is behind it is pushed out, but no
@@ -208,6 +208,13 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
     }
 }
 
+static void begin_dof_node(const brunt_contact_surface *s, int32_t n, brunt_dof_node *dof_node) {
+    *dof_node = (brunt_dof_node){.load = 0};
+    memcpy(dof_node->v, s->v[n], sizeof dof_node->v);
+    memcpy(dof_node->old, s->old[n], sizeof dof_node->old);
+    memcpy(dof_node->inverse, s->inverse[n], sizeof dof_node->inverse);
+}
+
 int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
                                      brunt_constraint_set *constraints, brunt_error *error) {
     if (f->nodes.dof_of[n] >= 0) return f->nodes.dof_of[n];
@@ -215,34 +222,79 @@ int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact
         return f->nodes.dof_of[n] = brunt_node_to_facet_dof_node(f, s, s->membrane.front[n], constraints, error);
     int32_t at = brunt_constraints_dof_node(constraints, error);
     if (at < 0) return BRUNT_NONE;
-    brunt_dof_node *dof_node = &constraints->dof_node[at];
-    memcpy(dof_node->v, s->v[n], sizeof dof_node->v);
-    memcpy(dof_node->old, s->old[n], sizeof dof_node->old);
-    memcpy(dof_node->inverse, s->inverse[n], sizeof dof_node->inverse);
+    begin_dof_node(s, n, &constraints->dof_node[at]);
     return f->nodes.dof_of[n] = at;
 }
 
-static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_facet *f,
-                                brunt_constraint_set *constraints, brunt_error *error) {
-    const brunt_contact_surface *s = m->surface;
-    int32_t constraint = constraints->constraint_count, entry = constraints->entry_count;
-    if (RESERVE(&f->nodes, first, 2 * (size_t)s->node_count + 2, "contact points of nodes", error)) return BRUNT_FAILED;
-    for (int32_t n = 0; n < s->node_count; n++) {
-        f->nodes.first[2 * n] = constraint, f->nodes.first[2 * n + 1] = entry;
+// Marks a node, and its twin of the front; several threads may.
+static void mark_node(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n) {
+    __atomic_store_n(&f->nodes.meets[n], 1, __ATOMIC_RELAXED);
+    if (s->membrane.front) __atomic_store_n(&f->nodes.meets[s->membrane.front[n]], 1, __ATOMIC_RELAXED);
+}
+
+// How many constraints and entries each node makes, and which nodes are in them.
+static void count_node_constraints(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const search_job *j = context;
+    const brunt_contact_surface *s = j->m->surface;
+    const brunt_node_to_facet *f = j->f;
+    for (int32_t n = (int32_t)begin; n < end; n++) {
+        int32_t entries = 0;
         for (int32_t q = 0; q < f->nodes.count[n]; q++) {
             const facet_candidate *h = &f->nodes.candidate[BRUNT_MAX_CANDIDATES * n + q];
             const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
             const int32_t *node = feature ? feature->node : s->face[h->face];
             const int count = feature ? feature->count : brunt_face_corners(s->face[h->face]);
-            if (brunt_node_to_facet_dof_node(f, s, n, constraints, error) < 0) return BRUNT_FAILED;
-            for (int c = 0; c < count; c++)
-                if (brunt_node_to_facet_dof_node(f, s, node[c], constraints, error) < 0) return BRUNT_FAILED;
-            constraint++, entry += 1 + count;
+            if (q == 0) mark_node(f, s, n);
+            for (int c = 0; c < count; c++) mark_node(f, s, node[c]);
+            entries += 1 + count;
         }
+        f->nodes.first[2 * n] = f->nodes.count[n], f->nodes.first[2 * n + 1] = entries;
     }
-    if (brunt_constraints_reserve(constraints, constraint, entry, error)) return BRUNT_FAILED;
-    constraints->constraint_count = constraint, constraints->entry_count = entry;
-    search_job j = {.m = m, .f = f, .constraints = constraints};
+}
+
+// From numbers of constraints and entries of nodes to their firsts; numbers for the nodes in them, in their order: a
+// twin of the front comes first. How many there are then of each goes to `total`.
+static void number_node_constraints(const brunt_contact_surface *s, brunt_node_to_facet *f, int32_t total[3]) {
+    for (int32_t n = 0; n < s->node_count; n++) {
+        for (int i = 0; i < 2; i++) {
+            const int32_t count = f->nodes.first[2 * n + i];
+            f->nodes.first[2 * n + i] = total[i], total[i] += count;
+        }
+        if (!f->nodes.meets[n] || f->nodes.dof_of[n] >= 0) continue;
+        const int32_t front = s->membrane.front ? s->membrane.front[n] : n;
+        f->nodes.dof_of[n] = front == n ? total[2]++ : f->nodes.dof_of[front];
+    }
+}
+
+static void begin_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const search_job *j = context;
+    const brunt_contact_surface *s = j->m->surface;
+    for (int32_t n = (int32_t)begin; n < end; n++) {
+        const int32_t at = j->f->nodes.dof_of[n];
+        if (at >= j->dofs_before && !(s->membrane.front && s->membrane.front[n] != n))
+            begin_dof_node(s, n, &j->constraints->dof_node[at]);
+    }
+}
+
+static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_facet *f,
+                                brunt_constraint_set *constraints, brunt_error *error) {
+    const brunt_contact_surface *s = m->surface;
+    const size_t nodes = (size_t)s->node_count;
+    int32_t total[3] = {constraints->constraint_count, constraints->entry_count, constraints->dof_node_count};
+    search_job j = {.m = m, .f = f, .constraints = constraints, .dofs_before = total[2]};
+    if (RESERVE(&f->nodes, first, 2 * nodes + 2, "contact points of nodes", error) ||
+        RESERVE(&f->nodes, meets, nodes + 1, "marks of nodes that meet facets", error))
+        return BRUNT_FAILED;
+    memset(f->nodes.meets, 0, nodes * sizeof *f->nodes.meets);
+    brunt_parallel(m->threads, s->node_count, GRAIN, count_node_constraints, &j, m->timer);
+    number_node_constraints(s, f, total);
+    if (total[0] == constraints->constraint_count) return BRUNT_OK;
+    if (brunt_constraints_reserve(constraints, total[0], total[1], total[2], error)) return BRUNT_FAILED;
+    constraints->constraint_count = total[0], constraints->entry_count = total[1];
+    constraints->dof_node_count = total[2];
+    brunt_parallel(m->threads, s->node_count, GRAIN, begin_dof_nodes, &j, m->timer);
     brunt_parallel(m->threads, s->node_count, GRAIN, fill_constraints, &j, m->timer);
     return BRUNT_OK;
 }
@@ -306,20 +358,33 @@ static void mark_gaps(brunt_contact_surface *s) {
             s->output.gap[s->membrane.front[n]] = fmin(s->output.gap[s->membrane.front[n]], s->output.gap[n]);
 }
 
+typedef struct finish_job {
+    brunt_contact_surface *surface;
+    brunt_node_to_facet *f;
+    const brunt_constraint_set *constraints;
+} finish_job;
+
+static void finish_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const finish_job *j = context;
+    brunt_contact_surface *s = j->surface;
+    int k = 0;
+    for (int32_t n = (int32_t)begin; n < end; n++) {
+        int32_t at = j->f->nodes.dof_of[n];
+        while (s->node_range[k + 1] <= n) k++;
+        if (at < 0 && j->f->touches.of) brunt_node_forgets(j->f, s, k, n);
+        if (at < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
+        for (int a = 0; a < 3; a++) {
+            s->output.impulse[n][a] += j->constraints->dof_node[at].impulse[a];
+            if (s->inverse[n][a] > 0) s->v[n][a] = j->constraints->dof_node[at].v[a];
+        }
+    }
+}
+
 void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
                                 const brunt_constraint_set *constraints) {
     brunt_contact_surface *s = m->surface;
-    int k = 0;
-    for (int32_t n = 0; n < s->node_count; n++) {
-        int32_t at = f->nodes.dof_of[n];
-        while (s->node_range[k + 1] <= n) k++;
-        if (at < 0 && f->touches.of) brunt_node_forgets(f, s, k, n);
-        if (at < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
-        for (int a = 0; a < 3; a++) {
-            s->output.impulse[n][a] += constraints->dof_node[at].impulse[a];
-            if (s->inverse[n][a] > 0) s->v[n][a] = constraints->dof_node[at].v[a];
-        }
-    }
+    brunt_parallel(m->threads, s->node_count, GRAIN, finish_nodes, &(finish_job){s, f, constraints}, m->timer);
     brunt_node_to_facet_scatter_grids(m, mpm, f, constraints);
     mark_state(s, constraints);
     if (s->membrane.front) mark_gaps(s);

@@ -141,8 +141,9 @@ void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const bru
         while (s->node_range[k + 1] <= n) k++;
         if (f->nodes.dof_of[n] < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
         for (int a = 0; a < s->dim; a++) {
+            if (s->inverse[n][a] > 0) continue;
             const double given = constraints->dof_node[f->nodes.dof_of[n]].impulse[a];
-            if (s->inverse[n][a] > 0 || given == 0) continue;
+            if (given == 0) continue;
             if (s->fem[k]->held && s->fem[k]->held[s->node[n]] >> a & 1) continue; // by a group, which has its account
             int w = fixing_plane(m, n, a);
             if (w < 0) continue;

@@ -51,7 +51,9 @@ int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t 
     const size_t nodes = (size_t)node_count + 2, faces = (size_t)face_count + 1;
     if (nodes > s->node_array_capacity) {
         const size_t room = s->node_array_capacity ? nodes + nodes / 2 : nodes, had = s->node_array_capacity;
-        int failed = enlarge(&s->motion.chunk, 0, (room / GRAIN + 1) * sizeof *s->motion.chunk, error);
+        const size_t pieces = room / BRUNT_SURFACE_PIECE + (size_t)s->fem_count + 1;
+        int failed = enlarge(&s->motion.chunk, 0, (room / GRAIN + 1) * sizeof *s->motion.chunk, error) ||
+                     enlarge(&s->motion.piece, 0, pieces * sizeof *s->motion.piece, error);
 #define ENLARGE(what, when)                                                                                            \
     if (!failed && (when)) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what, error);
         NODE_ARRAYS(ENLARGE)
@@ -180,7 +182,8 @@ int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count
 
 size_t brunt_surface_bytes(const brunt_contact_surface *s) {
     const size_t nodes = s->node_array_capacity, faces = s->face_array_capacity;
-    size_t of_body = 0, of_node = sizeof *s->motion.chunk / GRAIN, of_face = 4 * sizeof *s->face_of;
+    size_t of_body = sizeof *s->motion.piece, of_face = 4 * sizeof *s->face_of,
+           of_node = sizeof *s->motion.chunk / GRAIN + sizeof *s->motion.piece / BRUNT_SURFACE_PIECE;
 #define ADD(what) of_body += sizeof *s->what;
     BODY_ARRAYS(ADD)
 #undef ADD
@@ -224,6 +227,7 @@ void brunt_surface_free(brunt_contact_surface *s) {
                      s->motion.kept,
                      s->motion.travel,
                      s->motion.chunk,
+                     s->motion.piece,
                      s->motion.mean,
                      s->motion.speed,
                      s->face_first,

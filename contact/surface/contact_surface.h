@@ -66,6 +66,11 @@ typedef struct brunt_surface_motion {
     double (*kept)[6], *travel;
     bool rests;    // `kept` is there
     double *chunk; // [m^2] the same of each chunk of nodes, squared
+    // Bounds of the pieces of bodies that threads look at, BRUNT_SURFACE_PIECE nodes each. Piece p of body k is number
+    // node_range[k] / BRUNT_SURFACE_PIECE + k + p: room for all, and no table needed.
+    struct brunt_surface_piece {
+        double low[3], high[3], sum[3], fastest; // [m], [m/s], [m^2/s^2]
+    } * piece;
 } brunt_surface_motion;
 
 // Contact state of the step, of each node, for output. Zeroed each step.

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 
-enum { GRAIN = BRUNT_SURFACE_GRAIN };
+enum { GRAIN = BRUNT_SURFACE_GRAIN, PIECE = BRUNT_SURFACE_PIECE };
 // Share of a node's faces, by area, that must be left of their sum for it to have a normal, where elements have left:
 // that of a cube's corner is 0.58, of four faces of a wall and two at its end 0.33. Below, faces look every way, and
 // the little that is left of them points anywhere.
@@ -18,14 +18,28 @@ typedef struct job {
     const double *gravity;
 } job;
 
-static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) {
+static int32_t first_piece(const brunt_contact_surface *s, int k) { return s->node_range[k] / PIECE + k; }
+
+// The last body whose pieces begin at `piece` or before.
+static int body_of_piece(const brunt_contact_surface *s, int32_t piece) {
+    int low = 0, high = s->fem_count;
+    while (high - low > 1) {
+        const int middle = low + (high - low) / 2;
+        *(first_piece(s, middle) <= piece ? &low : &high) = middle;
+    }
+    return low;
+}
+
+static void bound_pieces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_contact_surface *s = ((const job *)context)->surface;
-    for (int64_t k = begin; k < end; k++) {
+    int k = body_of_piece(s, (int32_t)begin);
+    for (int64_t p = begin; p < end; p++) {
+        while (k + 1 < s->fem_count && first_piece(s, k + 1) <= p) k++;
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
         double sum[3] = {0}, fastest = 0;
-        const int32_t count = s->node_end[k] - s->node_range[k];
-        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
+        const int32_t first = s->node_range[k] + ((int32_t)p - first_piece(s, k)) * PIECE;
+        for (int32_t n = first; n < first + PIECE && n < s->node_end[k]; n++) {
             const real *at = brunt_fem_node(s->fem[k], s->node[n]);
             double square = 0;
             for (int a = 0; a < 3; a++) {
@@ -36,15 +50,39 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
             }
             fastest = square > fastest ? square : fastest;
         }
-        for (int a = 0; a < 3; a++)
-            s->low[k][a] = low[a], s->high[k][a] = high[a], s->motion.mean[k][a] = count ? sum[a] / count : 0;
-        s->motion.speed[k] = sqrt(fastest);
+        struct brunt_surface_piece *piece = &s->motion.piece[p];
+        memcpy(piece->low, low, sizeof low), memcpy(piece->high, high, sizeof high);
+        memcpy(piece->sum, sum, sizeof sum);
+        piece->fastest = fastest;
     }
+}
+
+// Of its pieces, in their order.
+static void bound_body(brunt_contact_surface *s, int k) {
+    const int32_t count = s->node_end[k] - s->node_range[k], first = first_piece(s, k);
+    struct brunt_surface_piece all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, {0}, 0};
+    for (int32_t p = first; p < first + (count + PIECE - 1) / PIECE; p++) {
+        const struct brunt_surface_piece *piece = &s->motion.piece[p];
+        for (int a = 0; a < 3; a++) {
+            all.low[a] = piece->low[a] < all.low[a] ? piece->low[a] : all.low[a];
+            all.high[a] = piece->high[a] > all.high[a] ? piece->high[a] : all.high[a];
+            all.sum[a] += piece->sum[a];
+        }
+        all.fastest = piece->fastest > all.fastest ? piece->fastest : all.fastest;
+    }
+    for (int a = 0; a < 3; a++) {
+        s->low[k][a] = all.low[a], s->high[k][a] = all.high[a];
+        s->motion.mean[k][a] = count ? all.sum[a] / count : 0;
+    }
+    s->motion.speed[k] = sqrt(all.fastest);
 }
 
 void brunt_surface_bounds(brunt_contact_surface *s, int threads, brunt_timer *timer) {
     job j = {.surface = s};
-    brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, timer);
+    if (!s->fem_count) return;
+    const int64_t pieces = s->node_range[s->fem_count] / PIECE + s->fem_count;
+    brunt_parallel(threads, pieces, 1, bound_pieces, &j, timer);
+    for (int k = 0; k < s->fem_count; k++) bound_body(s, k);
 }
 
 static void find_speeds(void *context, int64_t begin, int64_t end, int worker) {

@@ -3,7 +3,7 @@
 
 #include "contact/surface/contact_surface.h"
 
-enum { BRUNT_SURFACE_GRAIN = 256 };
+enum { BRUNT_SURFACE_GRAIN = 256, BRUNT_SURFACE_PIECE = 1024 };
 
 // --- contact_surface.c
 // Room for so many nodes and faces, with what is there kept: exactly that at the start, later half as much again, so

@@ -8,20 +8,20 @@
 
 // ------------------------------------------------------------------------------------------ points alone
 
-enum { CHAIN = 24 };
+enum { CHAIN = 24, LONG = 20000 };
 
 // A row of beads that touch, the first against a wall, all on their way towards it: an impulse must travel through all
 // of them, and every sweep takes it one bead on.
-static void make_chain(brunt_constraint_set *p, brunt_impulse_account *account) {
+static void make_chain(brunt_constraint_set *p, brunt_impulse_account *account, int count) {
     memset(p, 0, sizeof *p);
     memset(account, 0, sizeof *account);
-    for (int i = 0; i < CHAIN; i++) {
+    for (int i = 0; i < count; i++) {
         ck_assert_int_eq(brunt_constraints_dof_node(p, NULL), i);
         brunt_dof_node *s = &p->dof_node[i];
         s->v[0] = s->old[0] = -1;
         for (int a = 0; a < 3; a++) s->inverse[a] = 1;
     }
-    for (int i = 0; i < CHAIN; i++) {
+    for (int i = 0; i < count; i++) {
         ck_assert_int_eq(brunt_constraints_add(p, NULL), i);
         brunt_constraint *point = &p->constraint[i];
         point->n[0] = point->facet[0] = 1;
@@ -36,7 +36,7 @@ static double approach_left(int most, double tolerance, int *sweeps) {
     brunt_constraint_set p;
     brunt_impulse_account account;
     brunt_timer timer = {0};
-    make_chain(&p, &account);
+    make_chain(&p, &account, CHAIN);
     ck_assert_int_eq(brunt_constraints_solve(&p, most, tolerance, 1, &timer, NULL), BRUNT_OK);
     *sweeps = p.sweeps;
     double left = 0;
@@ -96,6 +96,63 @@ START_TEST(slivers_do_not_run_away) {
 }
 END_TEST
 
+// Bead i carries point i, the first of its column, and point i + 1, which begins with its friction point where it has
+// one: in the order of the points, however many groups of them are filled at once.
+static void check_columns(const brunt_constraint_set *p, int rough) {
+    for (int i = 0; i < p->dof_node_count; i++) {
+        int32_t q = p->column_first[i];
+        for (int k = i; k <= i + 1 && k < p->constraint_count; k++) {
+            const double weight = k == i ? 1 : -1;
+            ck_assert_int_eq(p->column[q].constraint, k);
+            ck_assert(p->column[q++].weight[0] == weight);
+            if (k % rough) continue;
+            ck_assert_int_eq(p->column[q].constraint, p->constraint_count + p->constraint[k].friction_point - 1);
+            ck_assert(p->column[q++].weight[0] == 0.5 * weight);
+        }
+        ck_assert_int_eq(p->column_first[i + 1], q);
+    }
+}
+
+// A chain long enough for several groups of points, every third of which rubs at a point of its own.
+static void solve_long_chain(int count, int threads, double *v) {
+    enum { ROUGH = 3 };
+    brunt_constraint_set p, rough = {0};
+    brunt_impulse_account account;
+    brunt_timer timer = {0};
+    make_chain(&p, &account, count);
+    for (int i = 0; i < count; i++) brunt_constraints_dof_node(&rough, NULL), rough.dof_node[i] = p.dof_node[i];
+    for (int i = 0; i < count; i++) {
+        brunt_constraints_add(&rough, NULL);
+        brunt_constraint *point = &rough.constraint[i];
+        const int32_t first = point->first;
+        *point = p.constraint[i], point->first = first, point->count = 0, point->friction = 0.3;
+        brunt_constraints_entry(&rough, i, 1, NULL);
+        if (i > 0) brunt_constraints_entry(&rough, i - 1, -1, NULL);
+        if (i % ROUGH) continue;
+        const int32_t rubs = brunt_constraints_friction_point(&rough, (const double[3]){0}, NULL);
+        for (int a = 0; a < 3; a++) {
+            rough.entry[rubs].weight[a] = 0.5;
+            if (i > 0) rough.entry[rubs + 1].weight[a] = -0.5;
+        }
+    }
+    ck_assert_int_eq(brunt_constraints_solve(&rough, 4, 0, threads, &timer, NULL), BRUNT_OK);
+    check_columns(&rough, ROUGH);
+    for (int i = 0; i < count; i++) v[i] = rough.dof_node[i].v[0];
+    brunt_constraints_free(&p);
+    brunt_constraints_free(&rough);
+}
+
+START_TEST(columns_are_in_the_order_of_the_points) {
+    static const int count[] = {1, 1023, 1024, 1025, 8192, 8193, LONG};
+    static double one[LONG], three[LONG];
+    for (size_t i = 0; i < sizeof count / sizeof count[0]; i++) {
+        solve_long_chain(count[i], 1, one);
+        solve_long_chain(count[i], 3, three);
+        ck_assert_mem_eq(one, three, (size_t)count[i] * sizeof one[0]);
+    }
+}
+END_TEST
+
 // The address sanitizer ends a program that asks for too much unless it is told to give nothing.
 __attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void) { return "allocator_may_return_null=1"; }
@@ -110,7 +167,7 @@ START_TEST(no_memory_is_told) {
     getrlimit(RLIMIT_AS, &old);
     little = (struct rlimit){(rlim_t)1 << 35, old.rlim_max}; // half a terabyte is asked for
     ck_assert_int_eq(setrlimit(RLIMIT_AS, &little), 0);
-    const int status = brunt_constraints_reserve(&p, INT32_MAX - 1, 1, &error);
+    const int status = brunt_constraints_reserve(&p, INT32_MAX - 1, 1, 1, &error);
     setrlimit(RLIMIT_AS, &old);
     ck_assert_int_eq(status, BRUNT_FAILED);
     ck_assert_int_eq(error.code, BRUNT_FAILED);
@@ -230,6 +287,7 @@ int main(void) {
     Suite *suite = suite_create("contact sweeps");
     ADD(more_sweeps_leave_less);
     ADD(no_memory_is_told);
+    ADD(columns_are_in_the_order_of_the_points);
     ADD(slivers_do_not_run_away);
     ADD(a_tighter_tolerance_leaves_less);
     ADD(whichever_comes_first_ends_them);

@@ -1,0 +1,92 @@
+// Which points press on a degree-of-freedom node: the transpose of the points' entries.
+//
+// Groups of points are counted and filled at once, each to its own places. Whatever their number, a column is in the
+// order of the points.
+#include "contact/constraint/columns.h"
+
+#include <string.h>
+
+#include "base/array.h"
+
+enum { GROUP = 1024, MAX_GROUPS = 8 };
+
+static struct brunt_constraint_column column_of(int32_t constraint, const brunt_constraint_entry *entry) {
+    return (struct brunt_constraint_column){
+        constraint,
+        {entry->weight[0], entry->weight[1], entry->weight[2]},
+        {entry->height_gradient[0], entry->height_gradient[1], entry->height_gradient[2]}};
+}
+
+// Points in groups of their order, so many each, but no more groups than MAX_GROUPS.
+static int32_t group_size(const brunt_constraint_set *p) {
+    const int32_t even = (p->constraint_count + MAX_GROUPS - 1) / MAX_GROUPS;
+    return even > GROUP ? even : GROUP;
+}
+
+// How many entries each group has of each node, those of friction points with the others.
+static void count_entries(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    const int32_t size = group_size(p);
+    for (int64_t g = begin; g < end; g++) {
+        int32_t *at = p->column_at + g * p->dof_node_count;
+        memset(at, 0, (size_t)p->dof_node_count * sizeof *at);
+        for (int32_t k = (int32_t)g * size; k < (g + 1) * size && k < p->constraint_count; k++) {
+            const brunt_constraint *constraint = &p->constraint[k];
+            const int32_t each = constraint->friction_point ? 2 : 1;
+            for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++)
+                at[p->entry[e].dof_node] += each;
+        }
+    }
+}
+
+// Where each node begins, and within it each group.
+static void place_columns(brunt_constraint_set *p, int32_t groups) {
+    int32_t next = 0;
+    for (int32_t s = 0; s < p->dof_node_count; s++) {
+        p->column_first[s] = next;
+        for (int32_t g = 0; g < groups; g++) {
+            int32_t *at = &p->column_at[(size_t)g * (size_t)p->dof_node_count + (size_t)s];
+            const int32_t count = *at;
+            *at = next, next += count;
+        }
+    }
+    p->column_first[p->dof_node_count] = next;
+}
+
+static void fill_columns(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    const int32_t size = group_size(p);
+    for (int64_t g = begin; g < end; g++) {
+        int32_t *at = p->column_at + g * p->dof_node_count;
+        for (int32_t k = (int32_t)g * size; k < (g + 1) * size && k < p->constraint_count; k++) {
+            const brunt_constraint *constraint = &p->constraint[k];
+            const int32_t friction_point = p->constraint_count + constraint->friction_point - 1;
+            memcpy(p->applied[k].facet, constraint->facet, sizeof constraint->facet);
+            if (constraint->friction_point)
+                memcpy(p->applied[friction_point].facet, constraint->facet, sizeof constraint->facet);
+            for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+                const int32_t node = p->entry[e].dof_node;
+                p->column[at[node]++] = column_of(k, &p->entry[e]);
+                if (constraint->friction_point)
+                    p->column[at[node]++] = column_of(friction_point, &p->entry[e + constraint->count]);
+            }
+        }
+    }
+}
+
+int brunt_constraints_make_columns(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
+    const int32_t groups = (p->constraint_count + group_size(p) - 1) / group_size(p);
+    size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1,
+           points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
+    if (BRUNT_CAPACITY(p->column, entries, 0, "entries of contact points", error) ||
+        BRUNT_CAPACITY(p->column_first, dof_nodes, 0, "nodes that contact moves", error) ||
+        BRUNT_CAPACITY(p->column_at, dof_nodes * (size_t)groups, 0, "nodes of groups of contact points", error) ||
+        BRUNT_CAPACITY(p->applied, points, 0, "impulses of contact points", error))
+        return BRUNT_FAILED;
+    brunt_parallel(threads, groups, 1, count_entries, p, timer);
+    place_columns(p, groups);
+    brunt_parallel(threads, groups, 1, fill_columns, p, timer);
+    return BRUNT_OK;
+}
