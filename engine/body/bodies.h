@@ -34,6 +34,8 @@ struct brunt_body_ops {
     // left, NAN: a report is no number. And as of its start, when nothing is left.
     double (*stable_step)(const brunt_body_ref *body, double cell, double around, double load);
     double (*first_step)(const brunt_body_ref *body, double cell);
+    // What a wave takes [s] through a mean element or a cell of it, undeformed.
+    double (*transit)(const brunt_body_ref *body, double cell);
     // Fields that can be read: how many, what they are, and the values of one in the order of the ids of their places.
     int32_t (*field_count)(const brunt_body_ref *body);
     brunt_field_info (*field)(const brunt_body_ref *body, int32_t field);

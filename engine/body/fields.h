@@ -17,7 +17,7 @@ void brunt_mesh_connectivity(const brunt_body_ref *ref, int32_t *out);
     {                                                                                                                  \
         .sums = sums, .energy = energy, .bounds = bounds, .hash = hash, .name = name, .material = material,            \
         .method = method, .dim = dim, .fineness = fineness, .count = count, .stable_step = stable_step,                \
-        .first_step = first_step, .field_count = brunt_##kind##_field_count, .field = brunt_##kind##_field,            \
-        .read = brunt_##kind##_read, .validate = validate, .block_count = block_count, .block_info = block_info,       \
-        .block_get = block_get, .block_set = block_set                                                                 \
+        .first_step = first_step, .transit = transit, .field_count = brunt_##kind##_field_count,                       \
+        .field = brunt_##kind##_field, .read = brunt_##kind##_read, .validate = validate, .block_count = block_count,  \
+        .block_info = block_info, .block_get = block_get, .block_set = block_set                                       \
     }

@@ -83,6 +83,7 @@ static double stable_step(const brunt_body_ref *ref, double cell, double around,
 static double first_step(const brunt_body_ref *ref, double cell) {
     return cell / (double)ref->mpm->material.wave_speed;
 }
+static double transit(const brunt_body_ref *ref, double cell) { return first_step(ref, cell); }
 
 // ------------------------------------------------------------------------------------------ state: ids, then fields
 

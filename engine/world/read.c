@@ -117,6 +117,28 @@ void brunt_boundary_reaction(const brunt_world *world, int32_t index, brunt_reac
     fill_force(&boundary->last, &boundary->account, world->clock.kick, force);
 }
 
+// Of bodies [first, end).
+static double longest_transit(const brunt_world *world, int32_t first, int32_t end) {
+    double longest = 0;
+    for (int32_t b = first; b < end && !brunt_world_newton(world, NULL, NULL); b++) {
+        const brunt_body_ref *ref = &world->bodies.all[b];
+        const double transit = ref->ops->transit(ref, world->settings.cell);
+        if (isfinite(transit)) longest = fmax(longest, transit);
+    }
+    return longest;
+}
+
+double brunt_pair_transit(const brunt_world *world, int32_t index) {
+    const brunt_pair *pair = &world->pairs.pair[index];
+    if (pair->a < 0) return longest_transit(world, 0, world->bodies.count);
+    return fmax(longest_transit(world, pair->a, pair->a + 1), longest_transit(world, pair->b, pair->b + 1));
+}
+
+double brunt_boundary_transit(const brunt_world *world, int32_t index) {
+    const int body = world->boundaries.boundary[index].body;
+    return body < 0 ? longest_transit(world, 0, world->bodies.count) : longest_transit(world, body, body + 1);
+}
+
 double brunt_world_time(const brunt_world *world) { return world->clock.time; }
 double brunt_world_end(const brunt_world *world) { return world->settings.end; }
 int64_t brunt_world_steps(const brunt_world *world) { return (int64_t)world->clock.steps; }

@@ -48,19 +48,16 @@ static void add_vector(brunt_history *h, const char *name, const char *unit, con
     for (int c = 0; c < 3; c++) add_named(h, unit, v[c], "%s_%c", name, 'x' + c);
 }
 
-// Force over the interval from the impulses at its ends; the impulse columns lie four after the force columns.
-static void add_force(brunt_history *h, const char *prefix, double interval, const brunt_reaction *force) {
-    double mean[3] = {0, 0, 0}, square = 0;
-    for (int c = 0; c < 3; c++) {
-        if (!h->declaring && h->rows > 0 && interval > 0)
-            mean[c] = (force->impulse[c] - h->columns[h->cursor + 4 + c].last) / interval;
-        square += mean[c] * mean[c];
-    }
+// Force number k and its impulse.
+static void add_force(brunt_history *h, const char *prefix, int32_t k, const brunt_reaction *force) {
+    double mean[3] = {0, 0, 0};
+    if (!h->declaring && h->rows > 0) brunt_history_mean_force(h, k, force->impulse, mean);
     char name[COLUMN_NAME];
     snprintf(name, sizeof name, "%s.%s.force", prefix, force->name);
     add_vector(h, name, "N", mean);
-    add(h, name, "N", sqrt(square));
+    add(h, name, "N", sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]));
     snprintf(name, sizeof name, "%s.%s.impulse", prefix, force->name);
+    if (h->declaring) h->forces[k].impulse = h->column_count;
     add_vector(h, name, "N s", force->impulse);
 }
 
@@ -275,9 +272,7 @@ static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
 // Every column there is, in order. The same traversal names them and fills them, so that the two cannot differ.
 static void traverse(brunt_history *h, brunt_world *world) {
     h->cursor = 0;
-    double time = brunt_world_time(world), interval = 0;
-    if (!h->declaring && h->rows > 0) interval = time - h->columns[0].last;
-    add(h, "time", "s", time);
+    add(h, "time", "s", brunt_world_time(world));
     add(h, "step", "1", (double)brunt_world_steps(world));
     add(h, "dt", "s", brunt_world_dt(world));
     add_energy(h, world);
@@ -290,13 +285,13 @@ static void traverse(brunt_history *h, brunt_world *world) {
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {
         brunt_reaction force;
         brunt_pair_force(world, p, &force);
-        add_force(h, "contact", interval, &force);
+        add_force(h, "contact", p, &force);
         add_named(h, flat ? "m" : "m^2", force.area, "contact.%s.area", force.name);
     }
     for (int32_t w = 0; w < brunt_boundary_count(world); w++) {
         brunt_reaction force;
         brunt_boundary_reaction(world, w, &force);
-        add_force(h, "wall", interval, &force);
+        add_force(h, "wall", brunt_pair_count(world) + w, &force);
     }
     for (int32_t s = 0; s < brunt_boundary_surface_count(world); s++) add_surface(h, world, s);
     for (int32_t g = 0; g < brunt_gas_count(world); g++) add_gas(h, world, g);
@@ -381,6 +376,10 @@ brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene
         h->probe_count++;
     }
     find_members(h, world, scene);
+    if (brunt_history_find_forces(h, world, scene, error)) {
+        brunt_history_destroy(h);
+        return NULL;
+    }
     h->declaring = true;
     traverse(h, world);
     h->declaring = false;
@@ -408,6 +407,8 @@ void brunt_history_destroy(brunt_history *history) {
     brunt_free(history->columns);
     brunt_names_free(&history->names);
     brunt_free(history->lines);
+    brunt_free(history->forces);
+    brunt_free(history->past.line);
     brunt_free(history->probes);
     brunt_free(history->members);
     brunt_free(history->scratch);
@@ -449,6 +450,7 @@ int brunt_history_sample(brunt_history *history, brunt_world *world, brunt_error
     if (history->out_of_memory)
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)history->rows);
     int status = history->csv ? append_to_file(history, error) : keep_in_memory(history, error);
+    if (!status) status = brunt_history_keep_past(history, error);
     if (status) return status;
     for (int32_t c = 0; c < history->column_count; c++) {
         column *at = &history->columns[c];
@@ -519,7 +521,12 @@ int brunt_history_resume(brunt_history *history, const char *path, int64_t lines
     line_reader r = {0};
     int status = line ? brunt_history_open_lines(&r, history, path, error)
                       : brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
-    for (int64_t row = 0; row < lines && !status; row++) status = brunt_history_next_line(&r, NULL, line, error);
+    history->past.count = history->past.old = 0;
+    for (int64_t row = 0; row < lines && !status; row++) {
+        status = brunt_history_next_line(&r, NULL, line, error);
+        for (int32_t c = 0; c < history->column_count && !status; c++) history->columns[c].now = line[c];
+        if (!status) status = brunt_history_keep_past(history, error);
+    }
     if (!status && r.hash != hash)
         status =
             brunt_fail(error, BRUNT_BAD_INPUT,
@@ -527,6 +534,7 @@ int brunt_history_resume(brunt_history *history, const char *path, int64_t lines
                        path, (long long)lines);
     for (int32_t c = 0; c < history->column_count && !status && lines; c++) history->columns[c].last = line[c];
     if (!status) history->rows = lines, history->hash = hash, history->resumed = true;
+    if (status) history->past.count = history->past.old = 0;
     brunt_history_close_lines(&r);
     brunt_free(line);
     return status;

@@ -1,9 +1,9 @@
 // The history of a run: one line per output time, one column per quantity, in history.h5 and history.csv.
 //
 // Columns are named with dots ("body.rod.velocity_x"); in the HDF5 file the dots are folders. All are doubles with a
-// unit. Forces are the mean over the interval since the line before: change of impulse over change of time, so that a
-// contact between two lines is not missed, and force x interval summed up is the impulse. The area that touches is that
-// of the step before the line.
+// unit. Forces are means: change of impulse over change of time since the line before, so that a contact between two
+// lines is not missed, and force x interval summed up is the impulse; where lines are closer than output.force_window,
+// over that time before the line (history_past.c). The area that touches is that of the step before the line.
 //
 // Lines are written as they come, one write each, to the CSV file, from which they are read back: none is kept in
 // memory, and a kill leaves whole lines. The checkpoint holds their number and a hash of them. The HDF5 file, which a

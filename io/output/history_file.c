@@ -22,7 +22,8 @@ static void dataset_name(const char *column_name, char out[COLUMN_NAME + 1]) {
 static bool put_texts(const brunt_history *h, hid_t file) {
     return brunt_hdf5_put_text(file, "title", h->title) && brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
            brunt_hdf5_put_integer(file, "run", (long long)h->run) &&
-           brunt_hdf5_put_text(file, "force", "mean over the interval since the line before");
+           brunt_hdf5_put_text(file, "force",
+                               "mean over output.force_window, or since the line before where that is longer");
 }
 
 static hid_t make_column(const brunt_history *h, hid_t file, int32_t c, const char *name, int64_t chunk) {

@@ -22,6 +22,20 @@ typedef struct probe {
     brunt_field_info info;
 } probe;
 
+// What has a force: the column of the impulse along x, and the time over which its force is a mean [s].
+typedef struct force_of {
+    int32_t impulse;
+    double window;
+} force_of;
+
+// What forces look back at: lines of a time and three impulses of each, the oldest first, of which `old` are no longer
+// needed.
+typedef struct past {
+    double *line, longest; // [s] of all windows
+    size_t line_capacity;  // [bytes]
+    int64_t count, old;
+} past;
+
 struct brunt_history {
     column *columns;
     size_t columns_capacity; // [bytes]
@@ -34,6 +48,9 @@ struct brunt_history {
     double *lines; // one after the other, as long as they go to no file
     size_t lines_capacity;
     bool resumed; // lines are in a file that is to be gone on with
+    force_of *forces;
+    int32_t force_count;
+    past past;
     probe *probes;
     int32_t probe_count;
     int32_t *members; // of crowds, that measures ask for: bodies in their order, each once
@@ -64,6 +81,14 @@ typedef struct line_reader {
 bool brunt_history_counts(const char *column_name);
 uint64_t brunt_history_hash_value(uint64_t hash, double value);
 void brunt_history_print_line(const brunt_history *h, const double *values, FILE *out);
+
+// What there is a force of, and over which time each is a mean. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_history_find_forces(brunt_history *h, const brunt_world *world, const brunt_scene *scene, brunt_error *error);
+// Keeps the impulses of the line in `now`, and those before it as long as they are needed.
+int brunt_history_keep_past(brunt_history *h, brunt_error *error);
+// Force number k of the line that is being made, over its window, or since the line before where that is longer, from
+// its impulse by now.
+void brunt_history_mean_force(const brunt_history *h, int32_t k, const double impulse[3], double mean[3]);
 
 // Starts with the first line; `path` NULL: from memory. To be closed in any case.
 int brunt_history_open_lines(line_reader *r, const brunt_history *h, const char *path, brunt_error *error);

@@ -70,10 +70,11 @@ typedef struct brunt_probe {
 } brunt_probe;
 
 typedef struct brunt_output_def {
-    double every;      // [s] between pictures (VTU); 0 = first and last only; INFINITY = none
-    double history;    // [s] between history lines; 0 = every step
-    double checkpoint; // [s of wall time] between checkpoints; 0 = every picture; INFINITY = only at the end and on
-                       // signals
+    double every;        // [s] between pictures (VTU); 0 = first and last only; INFINITY = none
+    double history;      // [s] between history lines; 0 = every step
+    double force_window; // [s] over which forces are means; 0: the step; INFINITY: by the bodies' elements
+    double checkpoint;   // [s of wall time] between checkpoints; 0 = every picture; INFINITY = only at the end and on
+                         // signals
     char (*fields)[64];
     int32_t field_count; // owned; what pictures hold besides id; "default": what the body's method always shows
     bool float32;        // pictures in single precision; default true

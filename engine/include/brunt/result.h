@@ -131,6 +131,10 @@ int32_t brunt_pair_count(const brunt_world *world);
 void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_reaction *force); // name "a-b", force on b
 int32_t brunt_boundary_count(const brunt_world *world); // planes, regions, groups, then surfaces
 void brunt_boundary_reaction(const brunt_world *world, int32_t boundary, brunt_reaction *force); // force on the bodies
+// What a wave takes [s] through an element or a cell of the bodies they act between, of the slowest: how fine in time a
+// force is of explicit steps. 0 of implicit ones, which have no waves to resolve.
+double brunt_pair_transit(const brunt_world *world, int32_t pair);
+double brunt_boundary_transit(const brunt_world *world, int32_t boundary);
 
 // A line or surface that holds material points, as of the last step; tractions, forces and moments are on the bodies.
 typedef struct brunt_boundary_surface_report {
