@@ -220,6 +220,61 @@ brunt_term brunt_fem_potential_term(brunt_fem_potential *p) {
     return (brunt_term){.ops = &ops, .self = p};
 }
 
+// --------------------------------------------------------------------------------- what stays
+
+bool brunt_fem_hessian_stays(const brunt_fem_potential *p) {
+    const brunt_material *material = &p->body->material;
+    bool alone = true;
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) alone = alone && (k == BRUNT_STRENGTH || !material->model[k]);
+    return alone && !strcmp(material->model[BRUNT_STRENGTH]->name, "linear-elastic") && !p->history && !p->modes &&
+           !p->body->traits->membrane && brunt_element_is_simplex(p->body->kind) && !p->body->held;
+}
+
+void brunt_fem_hessian_rest(brunt_fem_potential *p, const brunt_team *team) {
+    const real dt = p->dt;
+    fem_call call = {.p = p, .wanted = FEM_TANGENT};
+    p->dt = (real)INFINITY;
+    memset(p->displacement, 0, (size_t)p->body->node_count * (size_t)p->dim * sizeof *p->displacement);
+    brunt_parallel(team->threads, p->body->block_count, 1, run_blocks, &call, team->timer);
+    p->dt = dt;
+}
+
+enum { ELEMENT = NODE_LIMIT * 3 }; // components
+
+void brunt_fem_hessian_dense(const brunt_fem_potential *p, double *K) {
+    const int size = p->nodes * p->dim, all = p->body->node_count * p->dim;
+    for (int32_t s = 0; s < p->body->element_count; s++) {
+        double dense[ELEMENT * ELEMENT] = {0};
+        const int32_t *node = p->node + p->first[s];
+        p->kind->hessian(p, p->slot[s], dense);
+        for (int a = 0; a < size; a++)
+            for (int b = 0; b < size; b++) {
+                const int64_t row = (node[a / p->dim] - p->base) * p->dim + a % p->dim;
+                K[row * all + (node[b / p->dim] - p->base) * p->dim + b % p->dim] += dense[a * size + b];
+            }
+    }
+}
+
+double brunt_fem_hessian_over(const brunt_fem_potential *p, const brunt_fem_potential *other) {
+    static const double SAME = 1e-9; // of the greatest entry: places are rounded
+    const int size = p->nodes * p->dim;
+    double over = 0;
+    if (p->body->element_count != other->body->element_count || p->body->node_count != other->body->node_count ||
+        p->nodes != other->nodes || p->dim != other->dim)
+        return 0;
+    for (int32_t s = 0; s < p->body->element_count; s++) {
+        double one[ELEMENT * ELEMENT] = {0}, two[ELEMENT * ELEMENT] = {0}, most = 0;
+        for (int a = 0; a < p->nodes; a++)
+            if (p->node[p->first[s] + a] - p->base != other->node[p->first[s] + a] - other->base) return 0;
+        p->kind->hessian(p, p->slot[s], one), other->kind->hessian(other, other->slot[s], two);
+        for (int e = 0; e < size * size; e++) most = fmax(most, fabs(two[e]));
+        if (s == 0) over = one[0] / two[0];
+        for (int e = 0; e < size * size; e++)
+            if (!(fabs(one[e] - over * two[e]) <= SAME * over * most)) return 0;
+    }
+    return over;
+}
+
 // --------------------------------------------------------------------------------- commit
 
 typedef struct fem_commit {

@@ -28,3 +28,12 @@ brunt_term brunt_fem_potential_term(brunt_fem_potential *potential);
 // follow. BRUNT_OK, or BRUNT_FAILED with body, element, place and reason.
 int brunt_fem_commit(brunt_fem_potential *potential, const brunt_team *team, const double *u, const double *v,
                      brunt_error *error);
+// Whether the Hessian is the same wherever the body goes: of triangles of linear elasticity that nothing else is said
+// of, none of whose nodes are held.
+bool brunt_fem_hessian_stays(const brunt_fem_potential *potential);
+// Takes the Hessian at rest, for the two below.
+void brunt_fem_hessian_rest(brunt_fem_potential *potential, const brunt_team *team);
+// All of it, row by row of components, both triangles: adds to K, which is of all nodes of the body.
+void brunt_fem_hessian_dense(const brunt_fem_potential *potential, double *K);
+// How many times that of `other` the Hessian is, element by element; 0: it is another one.
+double brunt_fem_hessian_over(const brunt_fem_potential *potential, const brunt_fem_potential *other);

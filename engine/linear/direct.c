@@ -26,10 +26,13 @@ enum { ROWS_AND_COLUMNS = 7 };               // ICNTL(8): each is scaled to a gr
 typedef struct direct {
     DMUMPS_STRUC_C id;
     const brunt_block_matrix *a;
-    int *row, *column, *order; // of the entries that it is given, from 1; when each unknown is eliminated, from 1
-    int32_t *position;
-    double *value;
-    size_t row_capacity, column_capacity, order_capacity, position_capacity, value_capacity;
+    int *row, *column, *order;   // of the entries that it is given, from 1; when each unknown is eliminated, from 1
+    int32_t *position, *number;  // of each node; among those that couple with others, -1: it is alone
+    int32_t coupled, alone;      // how many: MUMPS sees the coupled ones
+    int32_t negative;            // pivots of the last factor
+    double *value, *inverse, *x; // inverse blocks of nodes that are alone; x of the coupled ones
+    size_t row_capacity, column_capacity, order_capacity, position_capacity, value_capacity, number_capacity,
+        inverse_capacity, x_capacity;
     bool begun;
 } direct;
 
@@ -88,6 +91,7 @@ static void direct_free(void *self) {
     direct *d = self;
     if (d->begun) call(d, JOB_END);
     brunt_free(d->row), brunt_free(d->column), brunt_free(d->order), brunt_free(d->position), brunt_free(d->value);
+    brunt_free(d->number), brunt_free(d->inverse), brunt_free(d->x);
     brunt_free(d);
 }
 
@@ -124,11 +128,11 @@ static int64_t take_entries(direct *d, const brunt_block_matrix *a, bool places)
     const bool upper = is_symmetric(d);
     int64_t e = 0;
     for (int32_t r = 0; r < a->nodes; r++)
-        for (int64_t k = upper ? a->diagonal[r] : a->first[r]; k < a->first[r + 1]; k++)
+        for (int64_t k = upper ? a->diagonal[r] : a->first[r]; d->number[r] >= 0 && k < a->first[r + 1]; k++)
             for (int i = 0; i < dim; i++)
                 for (int j = upper && k == a->diagonal[r] ? i : 0; j < dim; j++, e++) {
                     if (places)
-                        d->row[e] = r * dim + i + 1, d->column[e] = a->column[k] * dim + j + 1;
+                        d->row[e] = d->number[r] * dim + i + 1, d->column[e] = d->number[a->column[k]] * dim + j + 1;
                     else
                         d->value[e] = a->value[(k * dim + i) * dim + j];
                 }
@@ -136,8 +140,77 @@ static int64_t take_entries(direct *d, const brunt_block_matrix *a, bool places)
 }
 
 static int64_t count_entries(const direct *d, const brunt_block_matrix *a) {
-    const int64_t blocks = brunt_block_matrix_blocks(a), size = a->dim * a->dim;
-    return is_symmetric(d) ? (blocks - a->nodes) / 2 * size + a->nodes * (size + a->dim) / 2 : blocks * size;
+    const int64_t blocks = brunt_block_matrix_blocks(a) - d->alone, size = a->dim * a->dim;
+    return is_symmetric(d) ? (blocks - d->coupled) / 2 * size + d->coupled * (size + a->dim) / 2 : blocks * size;
+}
+
+static brunt_linear_status number_nodes(direct *d, const brunt_block_matrix *a, brunt_error *error) {
+    if (BRUNT_CAPACITY(d->position, (size_t)a->nodes, 0, "nodes in order", error) ||
+        BRUNT_CAPACITY(d->number, (size_t)a->nodes, 0, "nodes in order", error) ||
+        brunt_elimination_order(a, d->position, &d->coupled, error))
+        return BRUNT_LINEAR_FAILED;
+    d->alone = a->nodes - d->coupled;
+    for (int32_t n = 0, count = 0; n < a->nodes; n++) d->number[n] = d->position[n] < d->coupled ? count++ : -1;
+    return BRUNT_CAPACITY(d->inverse, (size_t)(d->alone * a->dim * a->dim) + 1, 0, "nodes in order", error)
+               ? BRUNT_LINEAR_FAILED
+               : BRUNT_LINEAR_DONE;
+}
+
+// A block becomes its inverse, by Gauss and Jordan; pivots below zero are counted. False: one was 0.
+static bool invert(int dim, double *a, int *negative) {
+    for (int k = 0; k < dim; k++) {
+        const double pivot = a[k * dim + k];
+        if (pivot == 0 || !isfinite(pivot)) return false;
+        *negative += pivot < 0;
+        a[k * dim + k] = 1;
+        for (int j = 0; j < dim; j++) a[k * dim + j] /= pivot;
+        for (int i = 0; i < dim; i++) {
+            const double f = a[i * dim + k];
+            if (i == k) continue;
+            a[i * dim + k] = 0;
+            for (int j = 0; j < dim; j++) a[i * dim + j] -= f * a[k * dim + j];
+        }
+    }
+    return true;
+}
+
+// The same of all nodes that are alone.
+static bool invert_alone(direct *d, const brunt_block_matrix *a) {
+    const int size = a->dim * a->dim;
+    double *to = d->inverse;
+    d->negative = 0;
+    for (int32_t n = 0; d->alone && n < a->nodes; n++) {
+        if (d->number[n] >= 0) continue;
+        memcpy(to, a->value + a->diagonal[n] * size, (size_t)size * sizeof *to);
+        if (!invert(a->dim, to, &d->negative)) return false;
+        to += size;
+    }
+    return true;
+}
+
+// Solutions of nodes that are alone, in place.
+static void solve_alone(const direct *d, const brunt_block_matrix *a, double *x) {
+    const double *block = d->inverse;
+    for (int32_t n = 0; n < a->nodes; n++) {
+        double b[3];
+        if (d->number[n] >= 0) continue;
+        memcpy(b, x + n * (int64_t)a->dim, (size_t)a->dim * sizeof *b);
+        for (int i = 0; i < a->dim; i++) {
+            double sum = 0;
+            for (int j = 0; j < a->dim; j++) sum += block[i * a->dim + j] * b[j];
+            x[n * (int64_t)a->dim + i] = sum;
+        }
+        block += a->dim * a->dim;
+    }
+}
+
+// To x of the coupled nodes, or back from it.
+static void move_coupled(const direct *d, const brunt_block_matrix *a, bool back, double *x, double *coupled) {
+    for (int32_t n = 0; n < a->nodes; n++)
+        for (int i = 0; d->number[n] >= 0 && i < a->dim; i++) {
+            double *all = &x[n * (int64_t)a->dim + i], *own = &coupled[d->number[n] * (int64_t)a->dim + i];
+            *(back ? all : own) = back ? *own : *all;
+        }
 }
 
 static int64_t memory_of_machine(void) {
@@ -163,23 +236,25 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
                                           brunt_error *error) {
     (void)team;
     direct *d = s->self;
-    const int64_t unknowns = (int64_t)a->nodes * a->dim, entries = count_entries(d, a);
     d->a = a;
-    if (unknowns > INT32_MAX) {
+    if ((int64_t)a->nodes * a->dim > INT32_MAX) {
         brunt_fail(error, BRUNT_FAILED, "The direct solver takes up to %d unknowns; these are %lld.", INT32_MAX,
-                   (long long)unknowns);
+                   (long long)a->nodes * a->dim);
         return BRUNT_LINEAR_FAILED;
     }
     static const char values[] = "entries of a matrix to factor";
+    if (number_nodes(d, a, error) != BRUNT_LINEAR_DONE) return BRUNT_LINEAR_FAILED;
+    const int64_t unknowns = (int64_t)d->coupled * a->dim, entries = count_entries(d, a);
     if (BRUNT_CAPACITY(d->row, (size_t)entries, 0, values, error) ||
         BRUNT_CAPACITY(d->column, (size_t)entries, 0, values, error) ||
         BRUNT_CAPACITY(d->value, (size_t)entries, 0, values, error) ||
         BRUNT_CAPACITY(d->order, (size_t)unknowns, 0, "unknowns in order", error) ||
-        BRUNT_CAPACITY(d->position, (size_t)a->nodes, 0, "nodes in order", error))
+        BRUNT_CAPACITY(d->x, d->alone ? (size_t)unknowns : 1, 0, "unknowns in order", error))
         return BRUNT_LINEAR_FAILED;
-    if (brunt_elimination_order(a, d->position, error)) return BRUNT_LINEAR_FAILED;
     for (int32_t n = 0; n < a->nodes; n++)
-        for (int c = 0; c < a->dim; c++) d->order[n * a->dim + c] = d->position[n] * a->dim + c + 1;
+        for (int c = 0; d->number[n] >= 0 && c < a->dim; c++)
+            d->order[d->number[n] * a->dim + c] = d->position[n] * a->dim + c + 1;
+    if (d->coupled == 0) return BRUNT_LINEAR_DONE;
     d->id.n = (int)unknowns, d->id.nnz = take_entries(d, a, true);
     BRUNT_ASSERT(d->id.nnz == entries);
     d->id.irn = d->row, d->id.jcn = d->column, d->id.a = d->value, d->id.perm_in = d->order;
@@ -191,12 +266,15 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
 static brunt_linear_status factorise(brunt_linear *s, const brunt_block_matrix *a, brunt_error *error) {
     direct *d = s->self;
     d->a = a;
+    if (!invert_alone(d, a)) return singular(d, d->coupled * a->dim, error);
+    if (d->coupled == 0) return BRUNT_LINEAR_DONE;
     take_entries(d, a, false);
     call(d, JOB_FACTOR);
     while ((INFOG(d, 1) == NO_REALS || INFOG(d, 1) == NO_INTEGERS) && ICNTL(d, 14) < RELAXED_LIMIT) {
         ICNTL(d, 14) *= 2; // its estimate was short
         call(d, JOB_FACTOR);
     }
+    d->negative += INFOG(d, 12);
     return INFOG(d, 1) < 0 ? explain(d, "factorise", error) : BRUNT_LINEAR_DONE;
 }
 
@@ -206,7 +284,7 @@ static brunt_linear_status direct_factor(brunt_linear *s, const brunt_team *team
     const direct *d = s->self;
     const brunt_linear_status status = factorise(s, a, error);
     if (status != BRUNT_LINEAR_DONE) return status;
-    s->report.negative = INFOG(d, 12);
+    s->report.negative = d->negative;
     if (s->report.negative == 0) return BRUNT_LINEAR_DONE;
     brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: %d of %d pivots are negative.",
                s->report.negative, d->id.n);
@@ -219,14 +297,12 @@ static brunt_linear_status unsymmetric_factor(brunt_linear *s, const brunt_team 
     const direct *d = s->self;
     const brunt_linear_status status = factorise(s, a, error);
     if (status != BRUNT_LINEAR_DONE) return status;
-    const int vanished = INFOG(d, 28);
+    const int vanished = d->coupled ? INFOG(d, 28) : 0;
     return vanished ? singular(d, d->id.n - vanished, error) : BRUNT_LINEAR_DONE;
 }
 
-static brunt_linear_status direct_many(brunt_linear *s, const brunt_team *team, int count, double *x,
-                                       brunt_error *error) {
-    (void)team;
-    direct *d = s->self;
+// Right sides of the coupled nodes, and then their solutions.
+static brunt_linear_status solve_coupled(direct *d, int count, double *x, brunt_error *error) {
     d->id.rhs = x, d->id.nrhs = count, d->id.lrhs = d->id.n;
     call(d, JOB_SOLVE);
     if (INFOG(d, 1) < 0) return explain(d, "solve with", error);
@@ -239,10 +315,27 @@ static brunt_linear_status direct_many(brunt_linear *s, const brunt_team *team, 
     return BRUNT_LINEAR_DONE;
 }
 
+static brunt_linear_status direct_many(brunt_linear *s, const brunt_team *team, int count, double *x,
+                                       brunt_error *error) {
+    (void)team;
+    direct *d = s->self;
+    const brunt_block_matrix *a = d->a;
+    if (!d->alone) return solve_coupled(d, count, x, error);
+    for (int k = 0; k < count; k++, x += (int64_t)a->nodes * a->dim) {
+        solve_alone(d, a, x);
+        if (d->coupled == 0) continue;
+        move_coupled(d, a, false, x, d->x);
+        const brunt_linear_status status = solve_coupled(d, 1, d->x, error);
+        if (status != BRUNT_LINEAR_DONE) return status;
+        move_coupled(d, a, true, x, d->x);
+    }
+    return BRUNT_LINEAR_DONE;
+}
+
 static brunt_linear_status direct_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
                                         brunt_error *error) {
     const direct *d = s->self;
-    memcpy(x, b, (size_t)d->id.n * sizeof *x);
+    memcpy(x, b, (size_t)d->a->nodes * (size_t)d->a->dim * sizeof *x);
     return direct_many(s, team, 1, x, error);
 }
 

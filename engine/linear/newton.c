@@ -37,11 +37,6 @@ typedef struct newton_run {
     bool endless;            // what terms keep beside u followed without end
 } newton_run;
 
-brunt_newton_options brunt_newton_defaults(void) {
-    return (brunt_newton_options){
-        .iterations = 100, .accuracy = 1e-3, .linear_iterations = 5000, .early = true, .solver = &brunt_linear_direct};
-}
-
 static void phase(const newton_run *r, brunt_newton_phase now) {
     if (r->options->phase) r->options->phase(r->options->context, now);
 }
@@ -125,13 +120,17 @@ static int make_pattern(newton_run *r) {
     brunt_newton *n = r->n;
     int lists = 0;
     for (int t = 0; t < r->problem->count; t++)
-        if (r->problem->terms[t].ops->stencils && !has_product(r, t))
+        if (r->problem->terms[t].ops->stencils && !has_product(r, t) &&
+            !brunt_condensation_has(r->problem->condensed, t))
             n->stencils[lists++] = r->problem->terms[t].ops->stencils(r->problem->terms[t].self);
+    const bool more = r->report->iterations > 0;
+    if (brunt_condensation_touch(r->problem->condensed, r->team, n->stencils, &lists, more, r->error))
+        return broken(r, BRUNT_NEWTON_BROKEN);
     const brunt_pattern pattern = {.dim = r->problem->dim,
                                    .nodes = r->problem->nodes,
                                    .stencils = n->stencils,
                                    .lists = lists,
-                                   .keep = r->report->iterations > 0,
+                                   .keep = more,
                                    .fold = r->problem->fold};
     if (brunt_block_matrix_pattern(&n->matrix, r->team, &pattern, r->error)) return broken(r, BRUNT_NEWTON_BROKEN);
     return BRUNT_OK;
@@ -143,8 +142,10 @@ static int fill_matrix(newton_run *r, bool project, bool again) {
     brunt_matrix_free *f = &r->n->free;
     if (again) brunt_block_matrix_zero(m, r->team);
     for (int t = 0; t < r->problem->count; t++)
-        if (r->problem->terms[t].ops->hessian && !has_product(r, t))
+        if (r->problem->terms[t].ops->hessian && !has_product(r, t) &&
+            !brunt_condensation_has(r->problem->condensed, t))
             r->problem->terms[t].ops->hessian(r->problem->terms[t].self, r->team, r->u, project, m);
+    brunt_condensation_fill(r->problem->condensed, r->team, m);
     if (r->problem->fold) brunt_fold_matrix(r->problem->fold, r->team, m);
     if (!r->options->matrix_free) return BRUNT_OK;
     f->fold = r->problem->fold;
@@ -185,8 +186,10 @@ static brunt_linear_status solve_with_factor(newton_run *r) {
     brunt_newton *n = r->n;
     phase(r, BRUNT_NEWTON_SOLVE);
     for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = -n->gradient[i];
+    brunt_condensation_gather(r->problem->condensed, r->team, n->trial);
     const brunt_linear_status status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
     if (status == BRUNT_LINEAR_DONE && r->problem->fold) brunt_fold_spread(r->problem->fold, r->problem->dim, n->step);
+    if (status == BRUNT_LINEAR_DONE) brunt_condensation_spread(r->problem->condensed, r->team, n->step);
     return status;
 }
 
@@ -226,6 +229,7 @@ static bool sweeps(const newton_run *r) {
 // Where the last factor takes the unknowns by forces, one set after the other.
 static int ways(void *context, int count, double *x) {
     newton_run *r = context;
+    BRUNT_ASSERT(!r->problem->condensed);
     for (int k = 0; k < count; k++) gather(r, x + k * unknowns(r));
     for (int64_t i = 0; i < count * unknowns(r); i++)
         if (r->problem->held && r->problem->held[i % unknowns(r)]) x[i] = 0;
@@ -473,6 +477,7 @@ static void find_weakest(newton_run *r) {
     if (r->n->linear.report.negative == 0) return; // it has no factors
     for (int64_t i = 0; i < unknowns(r); i++)
         x[i] = r->problem->held && r->problem->held[i] ? 0 : ldexp((double)(int64_t)brunt_mix((uint64_t)i + 1), -63);
+    brunt_condensation_clear(r->problem->condensed, x);
     for (int round = 0; round < ROUNDS; round++) {
         double square = 0;
         if (brunt_linear_solve(&r->n->linear, r->team, x, y, NULL) != BRUNT_LINEAR_DONE) return;
@@ -526,12 +531,13 @@ static int give_up(newton_run *r) {
 static int begin(newton_run *r) {
     brunt_newton *n = r->n;
     const size_t count = (size_t)unknowns(r);
+    BRUNT_ASSERT(!r->problem->condensed || (!r->options->matrix_free && !r->problem->fold));
     // A factor of the diagonal blocks alone would pass for the system's.
     BRUNT_ASSERT(!r->options->matrix_free || (r->options->solver == &brunt_linear_pcg && !r->options->fallback));
     static const char what[] = "unknowns of Newton's method";
     if (BRUNT_CAPACITY(n->gradient, count, 0, what, r->error) || BRUNT_CAPACITY(n->step, count, 0, what, r->error) ||
         BRUNT_CAPACITY(n->trial, count, 0, what, r->error) ||
-        BRUNT_CAPACITY(n->stencils, (size_t)r->problem->count, 0, "terms of Newton's method", r->error))
+        BRUNT_CAPACITY(n->stencils, (size_t)r->problem->count + 1, 0, "terms of Newton's method", r->error))
         return broken(r, BRUNT_NEWTON_BROKEN);
     phase(r, BRUNT_NEWTON_EVALUATE);
     if (open_solver(r, r->options->solver) || look(r, NULL)) return BRUNT_FAILED;
@@ -581,19 +587,4 @@ int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_
     if (status != BRUNT_LINEAR_DONE) return BRUNT_FAILED;
     for (int64_t i = 0; i < unknowns(&run); i++) p[i] = problem->held[i] ? lead->way[i] : newton->step[i];
     return BRUNT_OK;
-}
-
-void brunt_newton_free(brunt_newton *n) {
-    brunt_block_matrix_free(&n->matrix);
-    brunt_matrix_free_free(&n->free);
-    brunt_linear_close(&n->linear);
-    brunt_free(n->gradient), brunt_free(n->step), brunt_free(n->trial), brunt_free(n->stencils);
-    *n = (brunt_newton){0};
-}
-
-void brunt_newton_validate(const brunt_newton *n) {
-    brunt_block_matrix_validate(&n->matrix);
-    brunt_block_matrix_validate(&n->free.blocks);
-    BRUNT_ASSERT(n->analysed >= 0 && (n->analysed == 0 || n->linear.ops)); // what is analysed is so by a solver
-    BRUNT_ASSERT(!n->linear.ops == !n->linear.self);
 }

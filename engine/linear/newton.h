@@ -7,6 +7,7 @@
 // between; where there is none, gradients.
 #pragma once
 
+#include "linear/condense.h"
 #include "linear/fold.h"
 #include "linear/linear.h"
 #include "linear/matrix_free.h"
@@ -88,6 +89,8 @@ typedef struct brunt_problem {
     int count;
     const uint8_t *held;    // unknowns that stay as they are, nodes * dim; NULL: none. Followers as their leaders
     const brunt_fold *fold; // nodes that follow others, where u has them already; NULL: none
+    brunt_condensation *condensed; // bodies whose Hessian never changes; NULL: none. Not with followers or products of
+                                   // terms, nor where terms sweep or a minimum is led to
     // There is no energy: `gradient` is that of forces, whose derivative need not be symmetric. It is brought to 0:
     // steps are those of the unsymmetric solver, and lower its length.
     bool forces;

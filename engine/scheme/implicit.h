@@ -71,6 +71,8 @@ struct brunt_implicit {
                       // elements, of points, barrier, friction
     int fixed_terms, term_count, body_terms; // of them, before the first of a body, up to the last
     brunt_implicit_contact contact;
+    brunt_condensation condensation; // of load steps; no bodies: none
+    brunt_condensed_mesh *condensed_mesh;
     bool holds; // there are surfaces, the two below are of them
     brunt_boundary_rows rows;
     brunt_ghost ghost;
@@ -125,6 +127,11 @@ void brunt_implicit_loads(brunt_world *world, double time, double *load);
 // Gradients of terms [first, end) at u, summed.
 void brunt_implicit_gradient(const struct brunt_implicit *m, int first, int end, const double *u, double *g);
 
+// --- implicit_condense.c
+// Finds crowds whose inner nodes need not be among the unknowns of load steps, once there are all terms. BRUNT_OK, or
+// BRUNT_FAILED.
+int brunt_implicit_condense(struct brunt_implicit *m, brunt_error *error);
+void brunt_implicit_condense_free(struct brunt_implicit *m);
 // --- static_step.c
 // A load step begins, all that is held and the loads at its end are known: how stiff nodes are, how large forces, what
 // nothing holds. BRUNT_OK; BRUNT_FAILED: a body that nothing holds, and loads on it that do not balance.

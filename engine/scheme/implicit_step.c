@@ -87,13 +87,15 @@ static void count(struct brunt_implicit *m, const brunt_newton_report *report) {
     c->residual = m->still ? report->unbalance : report->step;
 }
 
-static brunt_problem problem_of(const struct brunt_implicit *m) {
+static brunt_problem problem_of(struct brunt_implicit *m) {
+    const bool condensed = m->condensation.count > 0 && !brunt_unknowns_fold(&m->unknowns);
     return (brunt_problem){.dim = m->unknowns.dim,
                            .nodes = m->unknowns.count,
                            .terms = m->term,
                            .count = m->term_count,
                            .held = m->unknowns.held,
                            .fold = brunt_unknowns_fold(&m->unknowns),
+                           .condensed = condensed ? &m->condensation : NULL,
                            .forces = m->forces};
 }
 
@@ -142,7 +144,8 @@ static int free_way(const struct brunt_implicit *m, double *way, brunt_error *er
 // be gone to: what is drawn or turned by its end follows, instead of being torn first.
 static int lead(struct brunt_implicit *m, brunt_error *error) {
     const brunt_fields *f = &m->field;
-    const brunt_problem problem = problem_of(m);
+    brunt_problem problem = problem_of(m);
+    problem.condensed = NULL; // ways of what is held are of the whole matrix
     brunt_newton_way way = {.way = f->step, .p = f->gradient};
     brunt_error vain = {.id = -1};
     if (!m->leads || way_left(m) == 0) return BRUNT_OK;

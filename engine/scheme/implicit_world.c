@@ -216,8 +216,9 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
                           "auto or direct is wanted");
     choose_solver(m, world->settings.newton.solver);
     brunt_implicit_follow(&world->plan);
-    const int status = make_bodies(world, m, error);
-    return status ? status : make_contact(world, m, def, error);
+    BRUNT_TRY(make_bodies(world, m, error));
+    BRUNT_TRY(make_contact(world, m, def, error));
+    return brunt_implicit_condense(m, error);
 }
 
 // Terms by what they are of; the rest is each part's own.
@@ -245,6 +246,7 @@ void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies) {
     brunt_free(f->grounded);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
+    brunt_implicit_condense_free(m);
     brunt_boundary_rows_free(&m->rows);
     brunt_ghost_free(&m->ghost);
     brunt_unknowns_free(&m->unknowns, bodies);
@@ -320,7 +322,8 @@ size_t brunt_implicit_matrix_bytes(const brunt_plan *plan) {
     const brunt_newton *n = &plan->implicit->newton;
     const brunt_block_matrix *a = &n->matrix;
     return a->first_capacity + a->column_capacity + a->diagonal_capacity + a->value_capacity + n->gradient_capacity +
-           n->step_capacity + n->trial_capacity + brunt_matrix_free_bytes(&n->free);
+           n->step_capacity + n->trial_capacity + brunt_matrix_free_bytes(&n->free) +
+           brunt_condensation_bytes(&plan->implicit->condensation);
 }
 
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems) {

@@ -238,7 +238,7 @@ START_TEST(barrier_in_closed_form) {
     wall.end = 0;
     springs *chain = new_springs(2, NODES, 50, 10);
     const brunt_term terms[] = {{&lone_ops, &inertia}, {&springs_ops, chain}, {&lone_ops, &wall}};
-    const brunt_problem problem = {2, NODES, terms, 3, NULL, NULL, false};
+    const brunt_problem problem = {2, NODES, terms, 3, NULL, NULL, NULL, false};
     const double x = -0.5 + sqrt(0.25 + 5e-4);
     double u[N];
     for (int i = 0; i < N; i++) u[i] = 1;
@@ -264,7 +264,7 @@ START_TEST(quadratic) {
     wall.end = -0.1;
     springs *chain = new_springs(3, NODES, 3, 40);
     const brunt_term terms[] = {{&lone_ops, &inertia}, {&springs_ops, chain}, {&lone_ops, &wall}};
-    const brunt_problem problem = {3, NODES, terms, 3, NULL, NULL, false};
+    const brunt_problem problem = {3, NODES, terms, 3, NULL, NULL, NULL, false};
     double u[N];
     for (int i = 0; i < N; i++) u[i] = 0.4 + 0.4 * sin(i * i);
     steps noted = {.unknowns = N};
@@ -295,7 +295,7 @@ START_TEST(an_early_end) {
     lone inertia = LONE(square, N, .a = 1, .b = 0.3), wall = LONE(barrier, N, .a = 0.2, .limits = true);
     wall.end = -0.1;
     const brunt_term terms[] = {{&lone_ops, &inertia}, {&springs_ops, chain}, {&lone_ops, &wall}};
-    const brunt_problem problem = {3, NODES, terms, 3, NULL, NULL, false};
+    const brunt_problem problem = {3, NODES, terms, 3, NULL, NULL, NULL, false};
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < N; i++) u[k][i] = 0.4 + 0.4 * sin(i * i);
         brunt_newton_options options = usual(1e-6);
@@ -325,7 +325,7 @@ START_TEST(until_forces_balance) {
     lone stiff = LONE(square, 2, .a = stiffness, .b = 0), wall = LONE(barrier, 2, .a = stiffness, .limits = true);
     wall.end = 0; // a minimum at 1, where x - 1 / x is 0
     const brunt_term terms[] = {{&lone_ops, &stiff}, {&lone_ops, &wall}};
-    const brunt_problem problem = {2, 1, terms, 2, NULL, NULL, false};
+    const brunt_problem problem = {2, 1, terms, 2, NULL, NULL, NULL, false};
     brunt_newton_options options = usual(1e-2);
     ck_assert_int_eq(minimise(&problem, &options, u, &report, NULL), BRUNT_OK);
     ck_assert_int_eq(report.iterations, 1);
@@ -348,7 +348,7 @@ START_TEST(out_of_what_is_not_convex) {
     enum { N = 8 };
     lone mass = LONE(square, N, .a = 0.1), two = LONE(wells, N, .a = 1);
     const brunt_term terms[] = {{&lone_ops, &mass}, {&lone_ops, &two}};
-    const brunt_problem problem = {2, N / 2, terms, 2, NULL, NULL, false};
+    const brunt_problem problem = {2, N / 2, terms, 2, NULL, NULL, NULL, false};
     double u[N];
     for (int i = 0; i < N; i++) u[i] = i % 2 ? 0.05 : -0.3;
     brunt_newton_options options = usual(1e-12);
@@ -369,7 +369,7 @@ END_TEST
 START_TEST(raised_where_singular) {
     springs *chain = new_springs(2, 2, 1, 0);
     const brunt_term terms[] = {{&springs_ops, chain}};
-    const brunt_problem problem = {2, 2, terms, 1, NULL, NULL, false};
+    const brunt_problem problem = {2, 2, terms, 1, NULL, NULL, NULL, false};
     double u[4] = {0, 0, 1, 0.5};
     brunt_newton_options options = usual(1e-9);
     brunt_newton_report report;
@@ -425,7 +425,7 @@ START_TEST(matrix_free) {
     lone inertia = LONE(square, N, .a = 0.01, .b = 0.3);
     const brunt_term terms[] = {{&lone_ops, &inertia}, {&free_springs_ops, chain}};
     uint8_t held[N] = {1, 1};
-    const brunt_problem problem = {2, NODES, terms, 2, held, NULL, false};
+    const brunt_problem problem = {2, NODES, terms, 2, held, NULL, NULL, false};
     double u[2][N];
     brunt_newton_report report;
     brunt_error error = {0};
@@ -491,7 +491,7 @@ START_TEST(what_has_no_minimum_is_said) {
         {{&lone_ops, &liar}, BRUNT_NEWTON_UPHILL, "no part of the step of iteration 1"},
         {{&lone_ops, &broken}, BRUNT_NEWTON_BROKEN, "component 0 of the gradient at node 0 is nan"},
     };
-    const brunt_problem problem = {2, N / 2, &cases[_i].term, 1, NULL, NULL, false};
+    const brunt_problem problem = {2, N / 2, &cases[_i].term, 1, NULL, NULL, NULL, false};
     double u[N] = {1, 1, 1, 1};
     brunt_newton_options options = usual(1e-9);
     options.iterations = 30;
@@ -508,7 +508,7 @@ START_TEST(held_unknowns_stay) {
     springs *chain = new_springs(2, NODES, 4, 0);
     const brunt_term terms[] = {{&free_springs_ops, chain}};
     uint8_t held[N] = {1, 1, 0, 0, 0, 0, 0, 0, 1, 1};
-    const brunt_problem problem = {2, NODES, terms, 1, held, NULL, false};
+    const brunt_problem problem = {2, NODES, terms, 1, held, NULL, NULL, false};
     for (int k = 0; k < 3; k++) {
         double u[N] = {0.25, -1, 7, 7, 7, 7, 7, 7, 1.25, 3};
         brunt_newton_options options = usual(1e-12);
@@ -537,7 +537,7 @@ START_TEST(fallback_and_phases) {
     springs *chain = new_springs(2, NODES, 100, 0);
     lone inertia = LONE(square, N, .a = 1e-3, .b = 0.3);
     const brunt_term terms[] = {{&lone_ops, &inertia}, {&springs_ops, chain}};
-    const brunt_problem problem = {2, NODES, terms, 2, NULL, NULL, false};
+    const brunt_problem problem = {2, NODES, terms, 2, NULL, NULL, NULL, false};
     brunt_newton_options options = usual(1e-9);
     options.solver = &brunt_linear_pcg, options.preconditioner = BRUNT_BLOCK_JACOBI, options.linear_iterations = 1;
     options.phase = note_phase;
@@ -564,7 +564,7 @@ START_TEST(any_number_of_threads) {
     lone inertia = LONE(square, N, .a = 1, .b = 0.3), wall = LONE(barrier, N, .a = 0.01, .limits = true);
     wall.end = -0.1;
     const brunt_term terms[] = {{&lone_ops, &inertia}, {&springs_ops, chain}, {&lone_ops, &wall}};
-    const brunt_problem problem = {3, CHAIN, terms, 3, NULL, NULL, false};
+    const brunt_problem problem = {3, CHAIN, terms, 3, NULL, NULL, NULL, false};
     for (int k = 0; k < 2; k++) {
         double *u = malloc(sizeof *u * N), *one = malloc(sizeof *one * N);
         brunt_newton_options options = usual(1e-9);

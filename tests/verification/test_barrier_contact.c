@@ -89,7 +89,7 @@ static brunt_newton_report slope_step(slope *s, double dt) {
     case_step(c), case_lag(c, s->u);
     const brunt_term terms[3] = {
         {&masses_ops, &inertia}, brunt_barrier_term(c->barrier), brunt_barrier_friction_term(c->barrier)};
-    const brunt_problem problem = {dim, c->nodes, terms, 3, s->held, NULL, false};
+    const brunt_problem problem = {dim, c->nodes, terms, 3, s->held, NULL, NULL, false};
     brunt_newton_report report;
     brunt_error error = {0};
     const int code = brunt_newton_minimise(&s->newton, &team, &problem, &s->options, s->u, &report, &error);

@@ -1,0 +1,425 @@
+#include "linear/condense.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/check.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "linear/assembly.h"
+
+enum { DIM = 2, LEAST_KEPT = 3, BODY_GRAIN = 8 }; // nodes that hold a body in two dimensions, and one to spare
+static const char WHAT[] = "bodies to condense";
+
+// ------------------------------------------------------------------------------------------ dense matrices
+
+// A = U^T U of the upper triangle, in place. False: it is not positive definite.
+static bool take_factor(int n, double *a) {
+    for (int k = 0; k < n; k++) {
+        double *top = a + (int64_t)k * n;
+        if (!(top[k] > 0)) return false;
+        const double part = 1 / sqrt(top[k]);
+        for (int j = k; j < n; j++) top[j] *= part;
+        for (int i = k + 1; i < n; i++) {
+            const double f = top[i];
+            double *row = a + (int64_t)i * n;
+            if (f == 0) continue;
+            for (int j = i; j < n; j++) row[j] -= f * top[j];
+        }
+    }
+    return true;
+}
+
+// Y += f X
+static void add_row(int m, double f, const double *X, double *Y) {
+    for (int j = 0; j < m; j++) Y[j] += f * X[j];
+}
+
+// X = (U^T U)^-1 X, of m columns.
+static void solve_rows(int n, const double *U, int m, double *X) {
+    for (int k = 0; k < n; k++) {
+        double *x = X + (int64_t)k * m;
+        for (int j = 0; j < m; j++) x[j] /= U[(int64_t)k * n + k];
+        for (int i = k + 1; i < n; i++)
+            if (U[(int64_t)k * n + i] != 0) add_row(m, -U[(int64_t)k * n + i], x, X + (int64_t)i * m);
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        double *x = X + (int64_t)k * m;
+        for (int i = k + 1; i < n; i++)
+            if (U[(int64_t)k * n + i] != 0) add_row(m, -U[(int64_t)k * n + i], X + (int64_t)i * m, x);
+        for (int j = 0; j < m; j++) x[j] /= U[(int64_t)k * n + k];
+    }
+}
+
+static double dot(int n, const double *a, const double *b) {
+    double s[4] = {0};
+    int i = 0;
+    for (; i + 4 <= n; i += 4)
+        for (int q = 0; q < 4; q++) s[q] += a[i + q] * b[i + q];
+    for (; i < n; i++) s[0] += a[i] * b[i];
+    return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+// The same of one column.
+static void solve_one(int n, const double *U, double *x) {
+    for (int k = 0; k < n; k++) {
+        const double *row = U + (int64_t)k * n;
+        x[k] /= row[k];
+        add_row(n - k - 1, -x[k], row + k + 1, x + k + 1);
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        const double *row = U + (int64_t)k * n;
+        x[k] = (x[k] - dot(n - k - 1, row + k + 1, x + k + 1)) / row[k];
+    }
+}
+
+// A of `all` nodes without those gone: S of the kept ones, U and C of the gone; `side` is room for what C has.
+typedef struct parted {
+    int all, kept_count, gone_count;
+    const double *A;
+    const int32_t *kept, *gone;
+    double *S, *U, *C;
+} parted;
+
+// Rows and columns of A for lists of nodes.
+static void take_part(const parted *p, const int32_t *rows, int m, const int32_t *columns, int n, double *part) {
+    for (int a = 0; a < m * DIM; a++)
+        for (int b = 0; b < n * DIM; b++)
+            part[(int64_t)a * n * DIM + b] =
+                p->A[(int64_t)(rows[a / DIM] * DIM + a % DIM) * p->all * DIM + columns[b / DIM] * DIM + b % DIM];
+}
+
+static bool reduce(const parted *p, double *side) {
+    const int k = p->kept_count * DIM, g = p->gone_count * DIM;
+    take_part(p, p->kept, p->kept_count, p->kept, p->kept_count, p->S);
+    take_part(p, p->gone, p->gone_count, p->gone, p->gone_count, p->U);
+    take_part(p, p->gone, p->gone_count, p->kept, p->kept_count, p->C);
+    memcpy(side, p->C, (size_t)g * (size_t)k * sizeof *side);
+    if (!take_factor(g, p->U)) return false;
+    solve_rows(g, p->U, k, p->C);
+    for (int i = 0; i < g; i++)
+        for (int a = 0; a < k; a++)
+            if (side[(int64_t)i * k + a] != 0)
+                add_row(k, -side[(int64_t)i * k + a], p->C + (int64_t)i * k, p->S + (int64_t)a * k);
+    for (int a = 0; a < k; a++)
+        for (int b = 0; b < a; b++) {
+            double *one = &p->S[(int64_t)a * k + b], *other = &p->S[(int64_t)b * k + a];
+            *one = *other = 0.5 * (*one + *other);
+        }
+    return true;
+}
+
+// ------------------------------------------------------------------------------------------ meshes
+
+// About the middle of the nodes, the turn by their mean distance from it.
+static void take_modes(brunt_condensed_mesh *mesh, const double *x) {
+    double middle[DIM] = {0}, square = 0;
+    for (int k = 0; k < mesh->nodes * DIM; k++) middle[k % DIM] += x[k] / mesh->nodes;
+    for (int k = 0; k < mesh->nodes * DIM; k++) square += (x[k] - middle[k % DIM]) * (x[k] - middle[k % DIM]);
+    const double size = sqrt(square / mesh->nodes);
+    for (int k = 0; k < mesh->nodes * DIM; k++) {
+        const int a = k % DIM, n = k / DIM;
+        double *mode = mesh->mode + k * BRUNT_RIGID;
+        mode[a] = 1, mode[1 - a] = 0;
+        mode[DIM] = (a == 0 ? -1 : 1) * (x[n * DIM + 1 - a] - middle[1 - a]) / size;
+    }
+}
+
+int brunt_condensed_mesh_make(brunt_condensed_mesh *mesh, int nodes, const double *K, const double *x,
+                              const uint8_t *on_rim, brunt_error *error) {
+    *mesh = (brunt_condensed_mesh){.nodes = nodes};
+    for (int n = 0; n < nodes; n++) *(on_rim[n] ? &mesh->rim_count : &mesh->inner_count) += 1;
+    const size_t rim = (size_t)(mesh->rim_count * DIM), inner = (size_t)(mesh->inner_count * DIM);
+    double *side;
+    int status = BRUNT_NEW(side, inner * rim + 1, WHAT, error);
+    if (!status)
+        status = BRUNT_NEW(mesh->rim, rim + 1, WHAT, error) || BRUNT_NEW(mesh->inner, inner + 1, WHAT, error) ||
+                 BRUNT_NEW(mesh->mode, nodes * DIM * BRUNT_RIGID, WHAT, error) ||
+                 BRUNT_NEW(mesh->K, rim * rim + 1, WHAT, error) || BRUNT_NEW(mesh->U, inner * inner + 1, WHAT, error) ||
+                 BRUNT_NEW(mesh->C, inner * rim + 1, WHAT, error);
+    if (!status) {
+        int r = 0, i = 0;
+        take_modes(mesh, x);
+        for (int n = 0; n < nodes; n++) *(on_rim[n] ? &mesh->rim[r++] : &mesh->inner[i++]) = n;
+        const parted p = {nodes,       mesh->rim_count, mesh->inner_count, K,      mesh->rim,
+                          mesh->inner, mesh->K,         mesh->U,           mesh->C};
+        if (!reduce(&p, side))
+            status = brunt_fail(error, BRUNT_FAILED,
+                                "the Hessian of a mesh of %d nodes is not positive definite with "
+                                "its rim held",
+                                nodes);
+    }
+    brunt_free(side);
+    if (status) brunt_condensed_mesh_free(mesh);
+    return status ? BRUNT_FAILED : BRUNT_OK;
+}
+
+void brunt_condensed_mesh_free(brunt_condensed_mesh *mesh) {
+    brunt_free(mesh->rim), brunt_free(mesh->inner), brunt_free(mesh->K), brunt_free(mesh->U), brunt_free(mesh->C);
+    brunt_free(mesh->mode);
+    *mesh = (brunt_condensed_mesh){0};
+}
+
+// ------------------------------------------------------------------------------------------ bodies
+
+static int make_body(brunt_condensation *c, int k, brunt_error *error) {
+    brunt_condensed_body *b = &c->body[k];
+    const brunt_condensed_mesh *mesh = b->mesh;
+    const size_t rim = (size_t)mesh->rim_count, size = rim * (size_t)DIM, all = (size_t)(mesh->nodes * DIM);
+    BRUNT_ASSERT(b->base + mesh->nodes <= c->nodes && rim >= LEAST_KEPT);
+    for (int i = 0; i < mesh->rim_count; i++)
+        c->owner[b->base + mesh->rim[i]] = k, c->place[b->base + mesh->rim[i]] = i;
+    for (int i = 0; i < mesh->inner_count; i++)
+        c->owner[b->base + mesh->inner[i]] = k, c->place[b->base + mesh->inner[i]] = -1 - i;
+    return BRUNT_NEW(b->touched, rim, WHAT, error) || BRUNT_NEW(b->is_kept, rim, WHAT, error) ||
+           BRUNT_NEW(b->kept, rim, WHAT, error) || BRUNT_NEW(b->gone, rim, WHAT, error) ||
+           BRUNT_NEW(b->S, size * size, WHAT, error) || BRUNT_NEW(b->dense, size * size, WHAT, error) ||
+           BRUNT_NEW(b->U, size * size, WHAT, error) || BRUNT_NEW(b->C, size * size, WHAT, error) ||
+           BRUNT_NEW(b->carry, size * BRUNT_RIGID, WHAT, error) || BRUNT_NEW(b->solved, all, WHAT, error);
+}
+
+int brunt_condensation_make(brunt_condensation *c, int32_t nodes, int terms, brunt_error *error) {
+    int64_t rims = 1;
+    for (int k = 0; k < c->count; k++) rims += c->body[k].mesh->rim_count;
+    c->nodes = nodes;
+    if (BRUNT_NEW(c->owner, nodes + 1, WHAT, error) || BRUNT_NEW(c->place, nodes + 1, WHAT, error) ||
+        BRUNT_NEW(c->left_out, terms, WHAT, error) || BRUNT_NEW(c->first, c->count + 1, WHAT, error) ||
+        BRUNT_NEW(c->node, rims, WHAT, error))
+        return BRUNT_FAILED;
+    for (int32_t n = 0; n < nodes; n++) c->owner[n] = -1;
+    for (int k = 0; k < c->count; k++)
+        if (make_body(c, k, error)) return BRUNT_FAILED;
+    return BRUNT_OK;
+}
+
+void brunt_condensation_free(brunt_condensation *c) {
+    for (int k = 0; c->body && k < c->count; k++) {
+        brunt_condensed_body *b = &c->body[k];
+        brunt_free(b->touched), brunt_free(b->is_kept), brunt_free(b->kept), brunt_free(b->gone);
+        brunt_free(b->S), brunt_free(b->U), brunt_free(b->C), brunt_free(b->solved);
+        brunt_free(b->carry), brunt_free(b->dense);
+    }
+    brunt_free(c->body), brunt_free(c->owner), brunt_free(c->place), brunt_free(c->left_out);
+    brunt_free(c->first), brunt_free(c->node);
+    *c = (brunt_condensation){0};
+}
+
+size_t brunt_condensation_bytes(const brunt_condensation *c) {
+    size_t numbers = 0;
+    for (int k = 0; k < c->count; k++) {
+        const size_t rim = (size_t)(c->body[k].mesh->rim_count * DIM);
+        numbers += 4 * rim * rim + (size_t)(c->body[k].mesh->nodes * DIM);
+    }
+    return numbers * sizeof(double);
+}
+
+// ------------------------------------------------------------------------------------------ what is touched
+
+// P (P^T P)^-1 of the modes P of kept nodes. False: they are in one place.
+static bool take_carry(const brunt_condensed_body *b) {
+    const brunt_condensed_mesh *mesh = b->mesh;
+    double gram[BRUNT_RIGID * BRUNT_RIGID] = {0};
+    for (int k = 0; k < b->kept_count * DIM; k++) {
+        const double *mode = mesh->mode + (mesh->rim[b->kept[k / DIM]] * DIM + k % DIM) * BRUNT_RIGID;
+        memcpy(b->carry + k * BRUNT_RIGID, mode, BRUNT_RIGID * sizeof *mode);
+        for (int p = 0; p < BRUNT_RIGID; p++) add_row(BRUNT_RIGID, mode[p], mode, gram + p * BRUNT_RIGID);
+    }
+    if (!take_factor(BRUNT_RIGID, gram)) return false;
+    for (int k = 0; k < b->kept_count * DIM; k++) solve_rows(BRUNT_RIGID, gram, 1, b->carry + k * BRUNT_RIGID);
+    return true;
+}
+
+static bool reduce_body(brunt_condensed_body *b) {
+    const brunt_condensed_mesh *mesh = b->mesh;
+    int gone = 0;
+    b->kept_count = 0;
+    for (int i = 0; i < mesh->rim_count; i++) *(b->is_kept[i] ? &b->kept[b->kept_count++] : &b->gone[gone++]) = i;
+    double *side = brunt_alloc(((size_t)gone * (size_t)b->kept_count * (size_t)(DIM * DIM) + 1) * sizeof *side);
+    const parted p = {mesh->rim_count, b->kept_count, gone, mesh->K, b->kept, b->gone, b->S, b->U, b->C};
+    const bool done = side && reduce(&p, side) && take_carry(b);
+    const int64_t size = (int64_t)b->kept_count * DIM;
+    for (int64_t k = 0; k < size * size; k++) b->S[k] *= b->scale;
+    if (!done) b->kept_count = 0;
+    brunt_free(side);
+    return done;
+}
+
+static void reduce_bodies(void *context, int64_t begin, int64_t end, int worker) {
+    brunt_condensation *c = context;
+    (void)worker;
+    for (int64_t k = begin; k < end; k++) {
+        brunt_condensed_body *b = &c->body[k];
+        const int rim = b->mesh->rim_count;
+        for (int q = 0; q < LEAST_KEPT; q++) b->touched[q * rim / LEAST_KEPT] = 1;
+        if (b->kept_count > 0 && !memcmp(b->touched, b->is_kept, (size_t)rim)) continue;
+        memcpy(b->is_kept, b->touched, (size_t)rim);
+        reduce_body(b);
+    }
+}
+
+int brunt_condensation_touch(brunt_condensation *c, const brunt_team *team, brunt_stencils *lists, int *count,
+                             bool more, brunt_error *error) {
+    if (!c) return BRUNT_OK;
+    for (int k = 0; k < c->count && !more; k++) memset(c->body[k].touched, 0, (size_t)c->body[k].mesh->rim_count);
+    for (int l = 0; l < *count; l++)
+        for (int64_t i = 0; i < (lists[l].count ? lists[l].first[lists[l].count] : 0); i++) {
+            const int32_t n = lists[l].node[i];
+            if (n >= c->nodes || c->owner[n] < 0) continue;
+            BRUNT_ASSERT(c->place[n] >= 0); // surfaces alone are touched
+            c->body[c->owner[n]].touched[c->place[n]] = 1;
+        }
+    brunt_parallel(team->threads, c->count, BODY_GRAIN, reduce_bodies, c, team->timer);
+    c->first[0] = 0;
+    for (int k = 0; k < c->count; k++) {
+        const brunt_condensed_body *b = &c->body[k];
+        if (b->kept_count == 0)
+            return brunt_fail(error, BRUNT_FAILED,
+                              "Body %d of a crowd cannot be condensed onto the nodes that others "
+                              "touch: out of memory, or no factor.",
+                              k);
+        c->first[k + 1] = c->first[k] + b->kept_count;
+        for (int i = 0; i < b->kept_count; i++) c->node[c->first[k] + i] = b->base + b->mesh->rim[b->kept[i]];
+    }
+    lists[(*count)++] = (brunt_stencils){.count = c->count, .first = c->first, .node = c->node};
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ the matrix
+
+typedef struct fill_work {
+    const brunt_condensation *c;
+    brunt_block_matrix *m;
+} fill_work;
+
+// Row n of the body's becomes that of the unit matrix; what it had on the diagonal is added to `gram`, by rigid
+// motions.
+static void leave_out(const brunt_condensed_body *b, brunt_block_matrix *m, int n, double *gram) {
+    double *d = brunt_block_matrix_diagonal(m, b->base + n);
+    for (int a = 0; a < DIM; a++) {
+        const double *mode = b->mesh->mode + (n * DIM + a) * BRUNT_RIGID;
+        for (int p = 0; p < BRUNT_RIGID; p++)
+            add_row(BRUNT_RIGID, d[a * (DIM + 1)] * mode[p], mode, gram + p * BRUNT_RIGID);
+        for (int e = 0; e < DIM; e++) d[a * DIM + e] = e == a;
+    }
+}
+
+// S, and what rigid motions have of the nodes that are left out, the same of kept ones.
+static void take_dense(const brunt_condensed_body *b, const double *gram, double *dense) {
+    const int size = b->kept_count * DIM;
+    memcpy(dense, b->S, (size_t)size * (size_t)size * sizeof *dense);
+    for (int i = 0; i < size; i++) {
+        double row[BRUNT_RIGID] = {0};
+        for (int p = 0; p < BRUNT_RIGID; p++)
+            add_row(BRUNT_RIGID, b->carry[i * BRUNT_RIGID + p], gram + p * BRUNT_RIGID, row);
+        for (int j = 0; j < size; j++)
+            for (int p = 0; p < BRUNT_RIGID; p++) dense[i * size + j] += row[p] * b->carry[j * BRUNT_RIGID + p];
+    }
+}
+
+static void fill_bodies(void *context, int64_t begin, int64_t end, int worker) {
+    const fill_work *w = context;
+    (void)worker;
+    for (int64_t k = begin; k < end; k++) {
+        const brunt_condensed_body *b = &w->c->body[k];
+        const brunt_condensed_mesh *mesh = b->mesh;
+        const int32_t *kept = w->c->node + w->c->first[k];
+        double gram[BRUNT_RIGID * BRUNT_RIGID] = {0};
+        for (int i = 0; i < mesh->inner_count; i++) leave_out(b, w->m, mesh->inner[i], gram);
+        for (int i = 0; i < mesh->rim_count - b->kept_count; i++) leave_out(b, w->m, mesh->rim[b->gone[i]], gram);
+        take_dense(b, gram, b->dense);
+        brunt_block_matrix_add(w->m, kept, b->kept_count, b->dense);
+    }
+}
+
+void brunt_condensation_fill(const brunt_condensation *c, const brunt_team *team, brunt_block_matrix *m) {
+    fill_work work = {c, m};
+    if (c) brunt_parallel(team->threads, c->count, BODY_GRAIN, fill_bodies, &work, team->timer);
+}
+
+// ------------------------------------------------------------------------------------------ right sides, solutions
+
+typedef struct vector_work {
+    const brunt_condensation *c;
+    double *x;
+    void (*each)(const brunt_condensed_body *body, double *x); // x: of its nodes
+} vector_work;
+
+enum { SIDE = 1024 }; // components of a body's side, at most
+
+// To or from the components of listed nodes, numbers in the rim (or, `of` NULL, nodes themselves).
+static void take_nodes(const double *x, const int32_t *of, const int32_t *list, int count, double *part) {
+    for (int i = 0; i < count; i++)
+        for (int a = 0; a < DIM; a++) part[i * DIM + a] = x[(of ? of[list[i]] : list[i]) * (int64_t)DIM + a];
+}
+
+static void put_nodes(double *x, const int32_t *of, const int32_t *list, int count, const double *part) {
+    for (int i = 0; i < count; i++)
+        for (int a = 0; a < DIM; a++) x[(of ? of[list[i]] : list[i]) * (int64_t)DIM + a] = part[i * DIM + a];
+}
+
+// f_k -= C^T f_g, and f_g becomes K_gg^-1 f_g of the mesh as it is scaled.
+static void gather_part(int k, int g, const double *U, const double *C, double scale, double *kept, double *gone) {
+    for (int i = 0; i < g; i++) add_row(k, -gone[i], C + (int64_t)i * k, kept);
+    solve_one(g, U, gone);
+    for (int i = 0; i < g; i++) gone[i] /= scale;
+}
+
+static void gather_body(const brunt_condensed_body *b, double *x) {
+    const brunt_condensed_mesh *mesh = b->mesh;
+    const int left = mesh->rim_count - b->kept_count;
+    double *inner = b->solved + mesh->rim_count * DIM, rim[SIDE], kept[SIDE];
+    take_nodes(x, NULL, mesh->inner, mesh->inner_count, inner);
+    take_nodes(x, NULL, mesh->rim, mesh->rim_count, rim);
+    gather_part(mesh->rim_count * DIM, mesh->inner_count * DIM, mesh->U, mesh->C, b->scale, rim, inner);
+    take_nodes(rim, NULL, b->gone, left, b->solved);
+    take_nodes(rim, NULL, b->kept, b->kept_count, kept);
+    gather_part(b->kept_count * DIM, left * DIM, b->U, b->C, b->scale, kept, b->solved);
+    memset(x, 0, (size_t)(mesh->nodes * DIM) * sizeof *x);
+    put_nodes(x, mesh->rim, b->kept, b->kept_count, kept);
+}
+
+// x_g -= C x_k
+static void spread_part(int k, int g, const double *C, const double *kept, double *gone) {
+    for (int i = 0; i < g; i++) gone[i] -= dot(k, C + (int64_t)i * k, kept);
+}
+
+static void spread_body(const brunt_condensed_body *b, double *x) {
+    const brunt_condensed_mesh *mesh = b->mesh;
+    const int left = mesh->rim_count - b->kept_count;
+    double *inner = b->solved + mesh->rim_count * DIM, rim[SIDE], kept[SIDE];
+    take_nodes(x, mesh->rim, b->kept, b->kept_count, kept);
+    spread_part(b->kept_count * DIM, left * DIM, b->C, kept, b->solved);
+    put_nodes(x, mesh->rim, b->gone, left, b->solved);
+    take_nodes(x, NULL, mesh->rim, mesh->rim_count, rim);
+    spread_part(mesh->rim_count * DIM, mesh->inner_count * DIM, mesh->C, rim, inner);
+    put_nodes(x, NULL, mesh->inner, mesh->inner_count, inner);
+}
+
+static void run_bodies(void *context, int64_t begin, int64_t end, int worker) {
+    const vector_work *w = context;
+    (void)worker;
+    for (int64_t k = begin; k < end; k++) w->each(&w->c->body[k], w->x + (int64_t)w->c->body[k].base * DIM);
+}
+
+void brunt_condensation_gather(const brunt_condensation *c, const brunt_team *team, double *f) {
+    vector_work work = {c, f, gather_body};
+    if (c) brunt_parallel(team->threads, c->count, BODY_GRAIN, run_bodies, &work, team->timer);
+}
+
+void brunt_condensation_spread(const brunt_condensation *c, const brunt_team *team, double *x) {
+    vector_work work = {c, x, spread_body};
+    if (c) brunt_parallel(team->threads, c->count, BODY_GRAIN, run_bodies, &work, team->timer);
+}
+
+void brunt_condensation_clear(const brunt_condensation *c, double *x) {
+    for (int k = 0; c && k < c->count; k++) {
+        const brunt_condensed_body *b = &c->body[k];
+        const brunt_condensed_mesh *mesh = b->mesh;
+        for (int i = 0; i < mesh->nodes; i++) {
+            const int place = c->place[b->base + i];
+            if (place >= 0 && b->is_kept[place]) continue;
+            memset(x + (b->base + i) * (int64_t)DIM, 0, (size_t)DIM * sizeof *x);
+        }
+    }
+}
