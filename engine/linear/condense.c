@@ -174,9 +174,8 @@ static int make_body(brunt_condensation *c, int k, brunt_error *error) {
         c->owner[b->base + mesh->inner[i]] = k, c->place[b->base + mesh->inner[i]] = -1 - i;
     return BRUNT_NEW(b->touched, rim, WHAT, error) || BRUNT_NEW(b->is_kept, rim, WHAT, error) ||
            BRUNT_NEW(b->kept, rim, WHAT, error) || BRUNT_NEW(b->gone, rim, WHAT, error) ||
-           BRUNT_NEW(b->S, size * size, WHAT, error) || BRUNT_NEW(b->dense, size * size, WHAT, error) ||
-           BRUNT_NEW(b->U, size * size, WHAT, error) || BRUNT_NEW(b->C, size * size, WHAT, error) ||
-           BRUNT_NEW(b->carry, size * BRUNT_RIGID, WHAT, error) || BRUNT_NEW(b->solved, all, WHAT, error);
+           BRUNT_NEW(b->parts, size * size, WHAT, error) || BRUNT_NEW(b->carry, size * BRUNT_RIGID, WHAT, error) ||
+           BRUNT_NEW(b->solved, all, WHAT, error);
 }
 
 int brunt_condensation_make(brunt_condensation *c, int32_t nodes, int terms, brunt_error *error) {
@@ -197,11 +196,10 @@ void brunt_condensation_free(brunt_condensation *c) {
     for (int k = 0; c->body && k < c->count; k++) {
         brunt_condensed_body *b = &c->body[k];
         brunt_free(b->touched), brunt_free(b->is_kept), brunt_free(b->kept), brunt_free(b->gone);
-        brunt_free(b->S), brunt_free(b->U), brunt_free(b->C), brunt_free(b->solved);
-        brunt_free(b->carry), brunt_free(b->dense);
+        brunt_free(b->parts), brunt_free(b->solved), brunt_free(b->carry);
     }
     brunt_free(c->body), brunt_free(c->owner), brunt_free(c->place), brunt_free(c->left_out);
-    brunt_free(c->first), brunt_free(c->node);
+    brunt_free(c->first), brunt_free(c->node), brunt_free(c->dense);
     *c = (brunt_condensation){0};
 }
 
@@ -209,9 +207,9 @@ size_t brunt_condensation_bytes(const brunt_condensation *c) {
     size_t numbers = 0;
     for (int k = 0; k < c->count; k++) {
         const size_t rim = (size_t)(c->body[k].mesh->rim_count * DIM);
-        numbers += 4 * rim * rim + (size_t)(c->body[k].mesh->nodes * DIM);
+        numbers += rim * rim + (size_t)(c->body[k].mesh->nodes * DIM);
     }
-    return numbers * sizeof(double);
+    return numbers * sizeof(double) + c->dense_capacity;
 }
 
 // ------------------------------------------------------------------------------------------ what is touched
@@ -236,9 +234,10 @@ static bool reduce_body(brunt_condensed_body *b) {
     b->kept_count = 0;
     for (int i = 0; i < mesh->rim_count; i++) *(b->is_kept[i] ? &b->kept[b->kept_count++] : &b->gone[gone++]) = i;
     double *side = brunt_alloc(((size_t)gone * (size_t)b->kept_count * (size_t)(DIM * DIM) + 1) * sizeof *side);
+    const int64_t size = (int64_t)b->kept_count * DIM, left = (int64_t)gone * DIM;
+    b->S = b->parts, b->U = b->S + size * size, b->C = b->U + left * left;
     const parted p = {mesh->rim_count, b->kept_count, gone, mesh->K, b->kept, b->gone, b->S, b->U, b->C};
     const bool done = side && reduce(&p, side) && take_carry(b);
-    const int64_t size = (int64_t)b->kept_count * DIM;
     for (int64_t k = 0; k < size * size; k++) b->S[k] *= b->scale;
     if (!done) b->kept_count = 0;
     brunt_free(side);
@@ -281,6 +280,11 @@ int brunt_condensation_touch(brunt_condensation *c, const brunt_team *team, brun
         c->first[k + 1] = c->first[k] + b->kept_count;
         for (int i = 0; i < b->kept_count; i++) c->node[c->first[k] + i] = b->base + b->mesh->rim[b->kept[i]];
     }
+    for (int k = 0; k < c->count; k++) {
+        const int64_t size = (int64_t)c->body[k].kept_count * DIM;
+        c->dense_size = size * size > c->dense_size ? size * size : c->dense_size;
+    }
+    if (BRUNT_CAPACITY(c->dense, (size_t)(c->dense_size * team->threads), 0, WHAT, error)) return BRUNT_FAILED;
     lists[(*count)++] = (brunt_stencils){.count = c->count, .first = c->first, .node = c->node};
     return BRUNT_OK;
 }
@@ -319,7 +323,7 @@ static void take_dense(const brunt_condensed_body *b, const double *gram, double
 
 static void fill_bodies(void *context, int64_t begin, int64_t end, int worker) {
     const fill_work *w = context;
-    (void)worker;
+    double *dense = w->c->dense + worker * w->c->dense_size;
     for (int64_t k = begin; k < end; k++) {
         const brunt_condensed_body *b = &w->c->body[k];
         const brunt_condensed_mesh *mesh = b->mesh;
@@ -327,8 +331,8 @@ static void fill_bodies(void *context, int64_t begin, int64_t end, int worker) {
         double gram[BRUNT_RIGID * BRUNT_RIGID] = {0};
         for (int i = 0; i < mesh->inner_count; i++) leave_out(b, w->m, mesh->inner[i], gram);
         for (int i = 0; i < mesh->rim_count - b->kept_count; i++) leave_out(b, w->m, mesh->rim[b->gone[i]], gram);
-        take_dense(b, gram, b->dense);
-        brunt_block_matrix_add(w->m, kept, b->kept_count, b->dense);
+        take_dense(b, gram, dense);
+        brunt_block_matrix_add(w->m, kept, b->kept_count, dense);
     }
 }
 

@@ -37,8 +37,8 @@ typedef struct brunt_condensed_body {
     uint8_t *is_kept;     // as it was reduced last
     int32_t *kept, *gone; // numbers in the rim, ascending
     int kept_count;       // 0: it has not been reduced
+    double *parts;        // of as many components as the rim has, squared: S, U, C
     double *S, *U, *C;    // of kept nodes, scaled; of those gone, as the mesh has them
-    double *dense;        // of kept nodes, as the matrix has it
     double *carry;        // of each kept component, by BRUNT_RIGID: P (P^T P)^-1 of its modes P
     double *solved;       // K_ii^-1 f_i of the last system: of the rim, then of inner nodes
 } brunt_condensed_body;
@@ -52,6 +52,9 @@ typedef struct brunt_condensation {
     bool *left_out; // of each term: whether it is such a body's
     int64_t *first; // a stencil each, of the kept nodes
     int32_t *node;
+    double *dense; // of each worker: S as the matrix has it
+    size_t dense_capacity;
+    int64_t dense_size;
 } brunt_condensation;
 
 // Bodies {mesh, base, scale} become all that they are; terms that are left out are the caller's to mark.
