@@ -103,10 +103,12 @@ static brunt_linear_status out_of_memory(const brunt_block_matrix *a, brunt_erro
     return BRUNT_LINEAR_FAILED;
 }
 
+// `rank`: of the nodes that couple, less what those that are alone have lost.
 static brunt_linear_status singular(const direct *d, int rank, brunt_error *error) {
     const bool symmetric = is_symmetric(d);
+    const int dim = d->a->dim;
     brunt_fail(error, BRUNT_FAILED, "The matrix is %ssingular, of rank %d of %d.",
-               symmetric ? "not positive definite: it is " : "", rank, d->id.n);
+               symmetric ? "not positive definite: it is " : "", rank + d->alone * dim, d->a->nodes * dim);
     return symmetric ? BRUNT_LINEAR_INDEFINITE : BRUNT_LINEAR_SINGULAR;
 }
 
@@ -149,6 +151,7 @@ static brunt_linear_status number_nodes(direct *d, const brunt_block_matrix *a, 
         BRUNT_CAPACITY(d->number, (size_t)a->nodes, 0, "nodes in order", error) ||
         brunt_elimination_order(a, d->position, &d->coupled, error))
         return BRUNT_LINEAR_FAILED;
+    if (!is_symmetric(d)) d->coupled = a->nodes; // a block may need its rows exchanged
     d->alone = a->nodes - d->coupled;
     for (int32_t n = 0, count = 0; n < a->nodes; n++) d->number[n] = d->position[n] < d->coupled ? count++ : -1;
     return BRUNT_CAPACITY(d->inverse, (size_t)(d->alone * a->dim * a->dim) + 1, 0, "nodes in order", error)
@@ -156,11 +159,15 @@ static brunt_linear_status number_nodes(direct *d, const brunt_block_matrix *a, 
                : BRUNT_LINEAR_DONE;
 }
 
-// A block becomes its inverse, by Gauss and Jordan; pivots below zero are counted. False: one was 0.
-static bool invert(int dim, double *a, int *negative) {
+// A symmetric block becomes its inverse, by Gauss and Jordan; pivots below zero are counted. How many were 0.
+static int invert(int dim, double *a, int *negative) {
+    int vanished = 0;
     for (int k = 0; k < dim; k++) {
         const double pivot = a[k * dim + k];
-        if (pivot == 0 || !isfinite(pivot)) return false;
+        if (pivot == 0 || !isfinite(pivot)) {
+            vanished++;
+            continue;
+        }
         *negative += pivot < 0;
         a[k * dim + k] = 1;
         for (int j = 0; j < dim; j++) a[k * dim + j] /= pivot;
@@ -171,21 +178,22 @@ static bool invert(int dim, double *a, int *negative) {
             for (int j = 0; j < dim; j++) a[i * dim + j] -= f * a[k * dim + j];
         }
     }
-    return true;
+    return vanished;
 }
 
 // The same of all nodes that are alone.
-static bool invert_alone(direct *d, const brunt_block_matrix *a) {
+static int invert_alone(direct *d, const brunt_block_matrix *a) {
     const int size = a->dim * a->dim;
+    int vanished = 0;
     double *to = d->inverse;
     d->negative = 0;
     for (int32_t n = 0; d->alone && n < a->nodes; n++) {
         if (d->number[n] >= 0) continue;
         memcpy(to, a->value + a->diagonal[n] * size, (size_t)size * sizeof *to);
-        if (!invert(a->dim, to, &d->negative)) return false;
+        vanished += invert(a->dim, to, &d->negative);
         to += size;
     }
-    return true;
+    return vanished;
 }
 
 // Solutions of nodes that are alone, in place.
@@ -266,7 +274,8 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
 static brunt_linear_status factorise(brunt_linear *s, const brunt_block_matrix *a, brunt_error *error) {
     direct *d = s->self;
     d->a = a;
-    if (!invert_alone(d, a)) return singular(d, d->coupled * a->dim, error);
+    const int lost = invert_alone(d, a);
+    if (lost) return singular(d, d->coupled * a->dim - lost, error);
     if (d->coupled == 0) return BRUNT_LINEAR_DONE;
     take_entries(d, a, false);
     call(d, JOB_FACTOR);
@@ -287,7 +296,7 @@ static brunt_linear_status direct_factor(brunt_linear *s, const brunt_team *team
     s->report.negative = d->negative;
     if (s->report.negative == 0) return BRUNT_LINEAR_DONE;
     brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: %d of %d pivots are negative.",
-               s->report.negative, d->id.n);
+               s->report.negative, a->nodes * a->dim);
     return BRUNT_LINEAR_INDEFINITE;
 }
 
