@@ -138,12 +138,17 @@ void brunt_implicit_condense_free(struct brunt_implicit *m);
 int brunt_static_begin(brunt_world *world, brunt_error *error);
 // What forces leave unbalanced, beside all that act (newton.h).
 double brunt_static_unbalance(void *context, const double *gradient);
+// [N] What rounding makes of forces along component k: places are known to some roundings of their size.
+double brunt_static_rounding(const struct brunt_implicit *m, int64_t k);
 // The step to try, in parts of a load step; the least part of one that is tried.
 double brunt_static_wanted(const brunt_world *world);
 double brunt_static_least(const brunt_settings *settings);
 // --- static_balance.c
 // What the forces on bodies leave, once `field.gradient` and `field.contact` are those at the end.
 void brunt_static_take_balance(struct brunt_implicit *m);
+// The greatest part of the forces on one body that is left of them, by the gradient at u: of one with next to none,
+// beside `act`, of all [N]; 0 where rounding makes it. Takes `field.contact` at u.
+double brunt_static_alone(struct brunt_implicit *m, const double *gradient, double act);
 // --- static_friction.c
 // From where held components are at their places to equilibrium with friction, by as many iterations as are allowed.
 typedef int brunt_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error);

@@ -62,11 +62,15 @@ static double pushes(const brunt_world *world) {
     return term->ops->energy(term->self, &m->team, m->field.u).value / m->contact.distance;
 }
 
+static const double ROUNDINGS = 10 * DBL_EPSILON; // what is known of places and ways, of their size
+
+double brunt_static_rounding(const struct brunt_implicit *m, int64_t k) {
+    return ROUNDINGS * m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
+}
+
 // Forces within bodies as the step begins, which loads and reactions balance; loads at its end, without any those that
-// push at the start; and what rounding makes: places are known to some roundings of their size, ways of surfaces to
-// some of theirs.
+// push at the start; and what rounding makes of them.
 static void take_scale(const brunt_world *world, struct brunt_implicit *m) {
-    enum { ROUNDINGS = 10 };
     const int64_t all = brunt_implicit_components(m);
     double within = 0, loads = 0, rounding = 0;
     const brunt_fold *fold = brunt_unknowns_fold(&m->unknowns);
@@ -74,14 +78,14 @@ static void take_scale(const brunt_world *world, struct brunt_implicit *m) {
     if (fold) brunt_fold_gather(fold, m->unknowns.dim, m->field.step);
     for (int64_t k = 0; k < all; k++) {
         within += fabs(m->field.step[k]), loads += fabs(m->field.load[k]);
-        rounding += m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
+        rounding += brunt_static_rounding(m, k);
     }
-    if (m->holds) rounding += brunt_boundary_rows_effort(&m->rows);
-    m->scale = (brunt_load_scale){.least = fmax(within, loads > 0 ? loads : pushes(world)),
-                                  .rounding = ROUNDINGS * DBL_EPSILON * rounding};
+    if (m->holds) rounding += ROUNDINGS * brunt_boundary_rows_effort(&m->rows);
+    m->scale = (brunt_load_scale){.least = fmax(within, loads > 0 ? loads : pushes(world)), .rounding = rounding};
 }
 
 static const double STALLS = 0.5; // of what was left before
+static const double ALONE = 100;  // times the tolerance: of the forces on one body
 
 double brunt_static_unbalance(void *context, const double *gradient) {
     struct brunt_implicit *m = context;
@@ -93,7 +97,9 @@ double brunt_static_unbalance(void *context, const double *gradient) {
     // What rounding of all forces makes one body may hold alone: it is none as long as iterations lessen it.
     if (left != m->scale.left) m->scale.before = m->scale.left, m->scale.left = left; // else it is where it was
     const bool rounding = left <= m->scale.rounding && left > STALLS * m->scale.before;
-    const double counts = rounding ? 0 : share;
+    double counts = rounding ? 0 : share;
+    // A small share of all forces may be most of those on one body.
+    if (!rounding && share <= m->options.tolerance) counts = fmax(share, brunt_static_alone(m, gradient, act) / ALONE);
     // Where it has converged its stability is asked for next: that bodies which contact alone holds slide on its
     // ripples is no matter.
     m->proximal.unheld =
