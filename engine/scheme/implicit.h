@@ -43,10 +43,10 @@ typedef struct brunt_fields {
     double *pull;         // [N/m] of components on their way to where they are to be, while they are
     double *stiffness;    // [N/m] of nodes, m (c / h)^2; of load steps
     double *rub, *tried;  // [m] where friction was taken last, and room; of load steps with friction
-    uint8_t *grounded;    // of nodes: whether something holds their body in all directions; of load steps
+    uint8_t *support;     // of nodes: brunt_support of their body; of load steps
     size_t u_capacity, v_capacity, aim_capacity, acceleration_capacity, load_capacity, force_before_capacity,
         gradient_capacity, contact_capacity, step_capacity, zero_capacity, pull_capacity, stiffness_capacity,
-        grounded_capacity, rub_capacity, tried_capacity;
+        support_capacity, rub_capacity, tried_capacity;
 } brunt_fields;
 
 struct brunt_implicit {

@@ -243,7 +243,7 @@ void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies) {
                               f->gradient,  f->contact,     f->step,      f->zero,         m->moved, f->pull,
                               f->stiffness, m->drag_weight, m->drag_rest, f->rub,          f->tried};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
-    brunt_free(f->grounded);
+    brunt_free(f->support);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
     brunt_implicit_condense_free(m);
@@ -266,7 +266,7 @@ static int reserve(const brunt_bodies *bodies, struct brunt_implicit *m, brunt_e
     for (int i = 0; i < bodies->mpm_count; i++)
         if ((size_t)bodies->mpm[i].particles.slots > most) most = (size_t)bodies->mpm[i].particles.slots;
     const bool failed = m->still ? BRUNT_CAPACITY(f->stiffness, n, 0, "unknowns", error) ||
-                                       BRUNT_CAPACITY(f->grounded, n, 0, "unknowns", error)
+                                       BRUNT_CAPACITY(f->support, n, 0, "unknowns", error)
                                  : BRUNT_CAPACITY(f->v, n, 0, "unknowns", error) ||
                                        BRUNT_CAPACITY(f->aim, n, 0, "unknowns", error) ||
                                        BRUNT_CAPACITY(f->acceleration, n, 0, "unknowns", error);
@@ -286,7 +286,7 @@ int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) 
         brunt_implicit_drag_number(m, world, error))
         return brunt_fail_inner(&world->clock, NULL, error);
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
-    m->proximal.stiffness = m->field.stiffness, m->proximal.grounded = m->field.grounded;
+    m->proximal.stiffness = m->field.stiffness, m->proximal.support = m->field.support;
     if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns, error))
         return brunt_fail_inner(&world->clock, NULL, error);
     return brunt_implicit_contact_points(&m->contact, &world->bodies, &m->unknowns, error)
@@ -315,7 +315,7 @@ size_t brunt_implicit_bytes(const brunt_world *world) {
     for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);
     return bytes + f->u_capacity + f->v_capacity + f->aim_capacity + f->acceleration_capacity + f->load_capacity +
            f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity + f->pull_capacity +
-           f->stiffness_capacity + f->grounded_capacity + f->rub_capacity + f->tried_capacity;
+           f->stiffness_capacity + f->support_capacity + f->rub_capacity + f->tried_capacity;
 }
 
 size_t brunt_implicit_matrix_bytes(const brunt_plan *plan) {

@@ -9,7 +9,8 @@
 #include "base/memory.h"
 #include "scheme/implicit.h"
 
-static const double GREATEST_UNHELD = 1e-5, LEAST_UNHELD = 1e-10; // of the stiffness, for bodies that nothing holds
+// Of the stiffness, beside which bodies stay near where they are: that nothing holds, and that contact bears.
+static const double UNSUPPORTED = 1e-5, BORNE = 3e-7, LEAST = 1e-10;
 
 // ------------------------------------------------------------------------------------------ parts of load steps
 
@@ -62,11 +63,15 @@ static double pushes(const brunt_world *world) {
     return term->ops->energy(term->self, &m->team, m->field.u).value / m->contact.distance;
 }
 
-static const double ROUNDINGS = 10 * DBL_EPSILON; // what is known of places and ways, of their size
+static const double ROUNDING = DBL_EPSILON; // of places and ways, of their size
 
 double brunt_static_rounding(const struct brunt_implicit *m, int64_t k) {
-    return ROUNDINGS * m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
+    return ROUNDING * m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
 }
+
+static const double STALLS = 0.5; // of what was left before
+enum { IN_A_ROW = 2 };            // iterations: friction that turns round may stop one
+static const double ALONE = 100;  // times the tolerance: of the forces on one body
 
 // Forces within bodies as the step begins, which loads and reactions balance; loads at its end, without any those that
 // push at the start; and what rounding makes of them.
@@ -80,12 +85,10 @@ static void take_scale(const brunt_world *world, struct brunt_implicit *m) {
         within += fabs(m->field.step[k]), loads += fabs(m->field.load[k]);
         rounding += brunt_static_rounding(m, k);
     }
-    if (m->holds) rounding += ROUNDINGS * brunt_boundary_rows_effort(&m->rows);
-    m->scale = (brunt_load_scale){.least = fmax(within, loads > 0 ? loads : pushes(world)), .rounding = rounding};
+    if (m->holds) rounding += ROUNDING * brunt_boundary_rows_effort(&m->rows);
+    m->scale = (brunt_load_scale){
+        .least = fmax(within, loads > 0 ? loads : pushes(world)), .rounding = rounding, .stalled = IN_A_ROW - 1};
 }
-
-static const double STALLS = 0.5; // of what was left before
-static const double ALONE = 100;  // times the tolerance: of the forces on one body
 
 double brunt_static_unbalance(void *context, const double *gradient) {
     struct brunt_implicit *m = context;
@@ -95,15 +98,20 @@ double brunt_static_unbalance(void *context, const double *gradient) {
     if (m->holds) reactions += brunt_boundary_rows_forces(&m->rows, m->field.u);
     const double act = fmax(m->scale.least, reactions), share = act > 0 ? left / act : left > 0 ? 1 : 0;
     // What rounding of all forces makes one body may hold alone: it is none as long as iterations lessen it.
-    if (left != m->scale.left) m->scale.before = m->scale.left, m->scale.left = left; // else it is where it was
-    const bool rounding = left <= m->scale.rounding && left > STALLS * m->scale.before;
+    if (left != m->scale.left) { // else it is where it was
+        m->scale.stalled = left > STALLS * m->scale.left ? m->scale.stalled + 1 : 0;
+        m->scale.left = left;
+    }
+    const bool rounding = left <= m->scale.rounding && m->scale.stalled >= IN_A_ROW;
     double counts = rounding ? 0 : share;
     // A small share of all forces may be most of those on one body.
     if (!rounding && share <= m->options.tolerance) counts = fmax(share, brunt_static_alone(m, gradient, act) / ALONE);
     // Where it has converged its stability is asked for next: that bodies which contact alone holds slide on its
     // ripples is no matter.
-    m->proximal.unheld =
-        counts <= m->options.tolerance ? GREATEST_UNHELD : fmax(LEAST_UNHELD, GREATEST_UNHELD * sqrt(fmin(share, 1)));
+    const bool done = counts <= m->options.tolerance;
+    const double less = done ? 1 : sqrt(fmin(share, 1));
+    m->proximal.share[BRUNT_UNSUPPORTED] = fmax(LEAST, UNSUPPORTED * less);
+    m->proximal.share[BRUNT_BORNE] = fmax(LEAST, (done ? UNSUPPORTED : BORNE) * less);
     return counts;
 }
 
@@ -277,7 +285,8 @@ static int check_piece(brunt_world *world, piece *p, int body, bool meets, brunt
     measure_piece(p);
     take_holding(p, m->field.load, &h);
     const bool held = solve_holding(&h, p->modes, left);
-    for (int32_t i = 0; i < p->count; i++) m->field.grounded[node_of(p, i)] = held;
+    const brunt_support support = held ? BRUNT_GROUNDED : meets ? BRUNT_BORNE : BRUNT_UNSUPPORTED;
+    for (int32_t i = 0; i < p->count; i++) m->field.support[node_of(p, i)] = (uint8_t)support;
     for (int k = 0; k < p->modes; k++) *(k < p->u->dim ? &force : &moment) += left[k] * left[k];
     force = sqrt(force), moment = sqrt(moment);
     if (held || meets || force + moment <= SMALL * h.all) return BRUNT_OK;
@@ -321,7 +330,7 @@ int brunt_static_begin(brunt_world *world, brunt_error *error) {
     const brunt_unknowns *u = &m->unknowns;
     take_stiffness(world, m);
     take_scale(world, m);
-    memset(m->field.grounded, 1, (size_t)u->count);
+    memset(m->field.support, BRUNT_GROUNDED, (size_t)u->count);
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
         piece p = {.u = u, .first = u->base[k], .count = fem->node_count, .modes = u->dim == 2 ? 3 : MODES};

@@ -129,7 +129,8 @@ static void proximal_add_hessian(void *context, int64_t begin, int64_t end, int 
     const add_job *job = context;
     const brunt_proximal *p = job->term;
     for (int64_t n = begin; n < end; n++) {
-        const double grid = n < p->unknowns->mesh_count ? 0 : p->everywhere, share = p->grounded[n] ? grid : p->unheld;
+        const double grid = n < p->unknowns->mesh_count ? 0 : p->everywhere;
+        const double share = p->support[n] == BRUNT_GROUNDED ? grid : p->share[p->support[n]];
         for (int a = 0; a < job->h->dim; a++)
             brunt_block_matrix_diagonal(job->h, (int32_t)n)[a * (job->h->dim + 1)] += share * p->stiffness[n];
     }

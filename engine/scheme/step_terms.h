@@ -12,20 +12,24 @@ typedef struct brunt_inertia {
     double c;          // [s^2]
 } brunt_inertia;
 
+// What keeps a body from rigid motion: nothing, contact alone, or conditions on its nodes.
+typedef enum brunt_support { BRUNT_UNSUPPORTED, BRUNT_BORNE, BRUNT_GROUNDED } brunt_support;
+
 // 1/2 sum w |u - iterate|^2 about each iterate of a load step: a step of Newton's method stays near where it begins,
 // what nothing holds does not fly away, and where it ends is the same.
 typedef struct brunt_proximal {
     const brunt_unknowns *unknowns;
-    const double *stiffness;   // [N/m] of nodes
-    const uint8_t *grounded;   // of nodes
-    double unheld, everywhere; // [-] shares of the stiffness: of what nothing holds, of all grid nodes
+    const double *stiffness;                  // [N/m] of nodes
+    const uint8_t *support;                   // of nodes, brunt_support
+    double share[BRUNT_GROUNDED], everywhere; // [-] of the stiffness: by support, of all grid nodes
 } brunt_proximal;
 
 // How large forces are of which load steps leave a part unbalanced.
 typedef struct brunt_load_scale {
-    double least;        // [N] of forces: of those within bodies at the start, loads at the end, or what pushes
-    double rounding;     // [N] that rounding of places makes
-    double left, before; // [N] at the last place, and at the one before: 0 at first
+    double least;    // [N] of forces: of those within bodies at the start, loads at the end, or what pushes
+    double rounding; // [N] that rounding of places makes
+    double left;     // [N] at the last place: 0 at first
+    int stalled;     // iterations in a row that have lessened it by next to nothing
 } brunt_load_scale;
 
 // -sum f . u.
