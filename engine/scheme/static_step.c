@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "scheme/implicit.h"
 
-// Of the stiffness, beside which bodies stay near where they are: that nothing holds, and that contact bears.
+// Of the stiffness, beside which bodies stay near where they are: that nothing holds, and that contact alone holds.
 static const double UNSUPPORTED = 1e-5, BORNE = 3e-7, LEAST = 1e-10;
 
 // ------------------------------------------------------------------------------------------ parts of load steps
