@@ -267,6 +267,32 @@ START_TEST(packings_without_loads_come_apart) {
 }
 END_TEST
 
+// Crowds have their inner nodes condensed where systems are factorised, and not where conjugate gradients solve them:
+// the equilibrium is the same, of bodies with other moduli each, too.
+START_TEST(condensed_crowds_are_as_whole_ones) {
+    static const char *const of[] = {
+        "links.mean",     "links.sd", "links.greatest", "body.top.position_y", "body.right.position_x",
+
+        "energy.internal"};
+    char words[400];
+    double condensed[ROWS], whole[ROWS];
+    small_put("square.yaml", square);
+    for (int k = 0; k < 2; k++) {
+        snprintf(words, sizeof words,
+                 "run square.yaml -t 1 -q -o %s --set newton.tolerance=1e-10 --set newton.solver=%s --set "
+                 "'bodies.grains.random={E: {normal: [2.75 MPa, 0.5 MPa], between: [0.5 MPa, 5 MPa]}, seed: 3}'",
+                 k ? "whole" : "condensed", k ? "pcg" : "direct");
+        small_expect(words, 0, NULL);
+    }
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        const int last = read_column("condensed", of[k], condensed) - 1;
+        ck_assert_int_eq(read_column("whole", of[k], whole) - 1, last);
+        printf("  %s: %.12g condensed, %.12g whole\n", of[k], condensed[last], whole[last]);
+        ck_assert_double_eq_tol(condensed[last], whole[last], 1e-7 * fabs(whole[last]));
+    }
+}
+END_TEST
+
 // Three disks, two below: the coefficient that keeps the lower ones from being pushed apart is tan 15 deg, within 1 %.
 // Below it nothing is kept of the step, and the body that slides is told. With barriers they stand at 1.01 of it in 25
 // iterations (the scene itself), with penalties in no more than 32 for each of two stiffnesses.
@@ -340,6 +366,7 @@ int main(void) {
     tcase_add_test(tests, load_is_turned_round);
     tcase_add_test(tests, packings_without_loads_come_apart);
     tcase_add_test(tests, what_slides_apart_is_told);
+    tcase_add_test(tests, condensed_crowds_are_as_whole_ones);
     tcase_add_loop_test(tests, pyramid_falls_below_its_friction, 0, 3);
     tcase_add_loop_test(tests, pyramid_of_six_stands_above_its_friction_alone, 0, 3);
     suite_add_tcase(suite, tests);
