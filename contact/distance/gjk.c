@@ -5,12 +5,18 @@
 // overlap; else its point nearest the origin gives distance and direction. That point is approached by simplices of at
 // most four support points. Every direction tried bounds the distance from below, and the best bound is what is
 // returned: a direction that does separate the bodies, however early the search ends.
+//
+// Ellipsoids are round, and polytopes come near to what is round slowly. So all of a body's are taken without a ball
+// that rolls about in each: the hulls of what is left are that much farther apart, in the same direction, and are
+// nearly those of the centres. Bodies that press on each other overlap by a thousandth of a cell and less, and these
+// cores are apart: that they are not by as much as the balls are thick is soon seen, mostly from the particles that
+// were the nearest between centres, without a look at any other.
 #include <math.h>
 #include <string.h>
 
 #include "contact/distance/gjk.h"
 
-enum { MAX_POINTS = 4, MAX_ROUNDS = 24 };
+enum { MAX_ROUNDS = 24 };
 static const double CLOSE_ENOUGH = 1e-8; // relative gap between bound and distance
 static const double OVERLAP = 1e-9;      // cells: nearer to the origin than this is in it
 
@@ -47,64 +53,145 @@ static bool solve(int n, double m[3][3], const double r[3], double x[3]) {
     return true;
 }
 
-// Point of the hull of `points` nearest the origin; drops the points it does not need. The last one is nearer than the
-// hull of the others was: every face that it is a corner of is tried, 8 at most.
-static void nearest(double points[MAX_POINTS][3], int *count, double v[3]) {
-    double best = INFINITY;
-    int best_faces = 1 << (*count - 1);
-    for (int mask = 1 << (*count - 1); mask < 1 << *count; mask++) {
-        int use[MAX_POINTS], n = 0;
-        for (int i = 0; i < *count; i++)
+typedef struct corner {
+    double x[3];
+    int a, b; // particles
+} corner;
+
+// Corners of a simplex, and its point nearest the origin.
+typedef struct simplex {
+    corner corner[BRUNT_CORNERS];
+    int count;
+    double v[3];
+} simplex;
+
+// Drops the corners that the nearest point does not need. The last one is nearer than the hull of the others was: every
+// face that it is a corner of is tried, 8 at most.
+static void find_nearest(simplex *s) {
+    const int others = s->count - 1;
+    const corner *last = &s->corner[others];
+    double e[3][3], gram[3][3], right[3], best = INFINITY;
+    int best_faces = 0;
+    for (int i = 0; i < others; i++) {
+        for (int k = 0; k < 3; k++) e[i][k] = s->corner[i].x[k] - last->x[k];
+        right[i] = -dot(e[i], last->x);
+        for (int k = 0; k <= i; k++) gram[i][k] = gram[k][i] = dot(e[i], e[k]);
+    }
+    for (int mask = 0; mask < 1 << others; mask++) {
+        double part[3][3], wanted[3], weight[3], at[3], first = 1;
+        int use[3], n = 0;
+        for (int i = 0; i < others; i++)
             if (mask >> i & 1) use[n++] = i;
-        const double *p = points[use[0]];
-        double e[3][3] = {{0}}, gram[3][3] = {{0}}, right[3] = {0}, weight[3] = {0}, at[3], first = 1;
-        for (int i = 1; i < n; i++)
-            for (int k = 0; k < 3; k++) e[i - 1][k] = points[use[i]][k] - p[k];
-        for (int i = 0; i < n - 1; i++) {
-            right[i] = -dot(e[i], p);
-            for (int k = 0; k < n - 1; k++) gram[i][k] = dot(e[i], e[k]);
+        for (int i = 0; i < n; i++) {
+            wanted[i] = right[use[i]];
+            for (int k = 0; k < n; k++) part[i][k] = gram[use[i]][use[k]];
         }
-        if (n > 1 && !solve(n - 1, gram, right, weight)) continue;
+        if (n && !solve(n, part, wanted, weight)) continue;
         bool inside = true;
-        memcpy(at, p, sizeof at);
-        for (int i = 0; i < n - 1; i++) {
+        memcpy(at, last->x, sizeof at);
+        for (int i = 0; i < n; i++) {
             inside = inside && weight[i] >= 0;
             first -= weight[i];
-            for (int k = 0; k < 3; k++) at[k] += weight[i] * e[i][k];
+            for (int k = 0; k < 3; k++) at[k] += weight[i] * e[use[i]][k];
         }
         if (!inside || first < 0 || dot(at, at) >= best) continue;
         best = dot(at, at);
         best_faces = mask;
-        memcpy(v, at, sizeof at);
+        memcpy(s->v, at, sizeof at);
     }
     int kept = 0;
-    for (int i = 0; i < *count; i++)
-        if (best_faces >> i & 1) memmove(points[kept++], points[i], sizeof points[0]);
-    *count = kept;
+    for (int i = 0; i <= others; i++)
+        if (i == others || best_faces >> i & 1) s->corner[kept++] = s->corner[i];
+    s->count = kept;
 }
 
-double brunt_gjk_distance(const brunt_cloud *a, const brunt_cloud *b, double h, bool reach, const double start[3],
-                          double n[3]) {
-    double points[MAX_POINTS][3], v[3] = {start[0], start[1], start[2]}, bound = 0;
-    int count = 0;
+// What is looked for.
+typedef struct search {
+    const brunt_cloud *a, *b;
+    double h;
+    bool reach;
+    double ball; // [m] radii of the balls, together, that both are taken without
+} search;
+
+// The difference of where particles c->a and c->b end along n and against it.
+static void place(const search *in, const double n[3], corner *c) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    double pa[3], pb[3];
+    brunt_cloud_end(in->a, c->a, in->reach, n, pa), brunt_cloud_end(in->b, c->b, in->reach, back, pb);
+    for (int k = 0; k < 3; k++) c->x[k] = pb[k] - pa[k] + in->ball * n[k];
+}
+
+// The same of the two that go farthest. Whether there are any.
+static bool look(const search *in, const double n[3], corner *c) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    if (!isfinite(brunt_cloud_extent(in->a, in->reach, n, &c->a)) ||
+        !isfinite(brunt_cloud_extent(in->b, in->reach, back, &c->b)))
+        return false;
+    place(in, n, c);
+    return true;
+}
+
+static bool overlaps(const search *in, const simplex *s) {
+    return s->count == BRUNT_CORNERS || !(sqrt(dot(s->v, s->v)) > in->ball + OVERLAP * in->h);
+}
+
+// Searches on from a simplex, or along s->v where it has no corner yet; as brunt_gjk_centres.
+static double search_from(const search *in, simplex *s, double n[3]) {
+    double bound = 0;
     for (int round = 0; round < MAX_ROUNDS; round++) {
-        double size = sqrt(dot(v, v)), along[3], back[3], pa[3], pb[3], w[3];
-        if (!(size > OVERLAP * h) || !isfinite(size)) return 0;
-        for (int k = 0; k < 3; k++) along[k] = v[k] / size, back[k] = -along[k];
-        if (!isfinite(brunt_cloud_extent(a, reach, along, pa)) || !isfinite(brunt_cloud_extent(b, reach, back, pb)))
-            return 0;
-        for (int k = 0; k < 3; k++) w[k] = pb[k] - pa[k];
-        double reached = dot(w, along);
-        if (reached > bound) {
-            bound = reached;
+        const bool known = s->count > 0;
+        const double size = sqrt(dot(s->v, s->v)), along[3] = {s->v[0] / size, s->v[1] / size, s->v[2] / size};
+        corner *next = &s->corner[s->count];
+        if ((known && overlaps(in, s)) || !(size > 0) || !isfinite(size) || !look(in, along, next)) return 0;
+        const double reached = dot(next->x, along);
+        if (reached - in->ball > bound) {
+            bound = reached - in->ball;
             memcpy(n, along, sizeof along);
         }
-        if (round > 0 && size - reached <= CLOSE_ENOUGH * size) break;
-        for (int i = 0; i < count; i++)
-            if (!memcmp(points[i], w, sizeof w)) return bound; // nothing new: rounding has the last word
-        memcpy(points[count++], w, sizeof w);
-        nearest(points, &count, v);
-        if (count == MAX_POINTS) return 0; // the origin is inside
+        if (known && size - reached <= CLOSE_ENOUGH * (size - in->ball)) return bound;
+        for (int i = 0; i < s->count; i++)
+            if (!memcmp(s->corner[i].x, next->x, sizeof next->x)) return bound; // rounding has the last word
+        s->count++;
+        find_nearest(s);
     }
     return bound;
+}
+
+double brunt_gjk_centres(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
+                         brunt_corners *corners) {
+    const search in = {.a = a, .b = b, .h = h};
+    simplex s = {.v = {start[0], start[1], start[2]}};
+    const double distance = search_from(&in, &s, n);
+    corners->count = s.count < BRUNT_CORNERS ? s.count : 0;
+    for (int i = 0; i < corners->count; i++) corners->a[i] = s.corner[i].a, corners->b[i] = s.corner[i].b;
+    return distance;
+}
+
+// The simplex of the pairs of particles given. Whether they alone tell that the bodies overlap.
+static bool begin(const search *in, const double n[3], const brunt_corners *corners, simplex *s) {
+    *s = (simplex){.v = {n[0], n[1], n[2]}};
+    for (int i = 0; i < corners->count; i++) {
+        corner *next = &s->corner[s->count];
+        next->a = corners->a[i], next->b = corners->b[i];
+        place(in, n, next);
+        if (s->count && !(dot(next->x, s->v) < dot(s->v, s->v))) continue;
+        s->count++;
+        find_nearest(s);
+        if (overlaps(in, s)) return true;
+    }
+    return false;
+}
+
+double brunt_gjk_reaches(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
+                         const brunt_corners *corners) {
+    const double size = sqrt(dot(start, start)), along[3] = {start[0] / size, start[1] / size, start[2] / size};
+    search in = {.a = a, .b = b, .h = h, .reach = true};
+    simplex s;
+    in.ball = corners->count ? brunt_cloud_ball_of(a, corners->a, corners->count) +
+                                   brunt_cloud_ball_of(b, corners->b, corners->count)
+                             : 0;
+    if (begin(&in, along, corners, &s)) return 0;
+    in.ball = brunt_cloud_ball(a) + brunt_cloud_ball(b);
+    if (!isfinite(in.ball) || begin(&in, along, corners, &s)) return 0;
+    return search_from(&in, &s, n);
 }

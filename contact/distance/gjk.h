@@ -3,8 +3,16 @@
 
 #include "contact/distance/particle_cloud.h"
 
-// Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;
-// left alone when 0). `start`: where to look first, any length but 0. `h`: edge of a cell [m]. `reach`: as in
-// brunt_cloud_extent.
-double brunt_gjk_distance(const brunt_cloud *a, const brunt_cloud *b, double h, bool reach, const double start[3],
-                          double n[3]);
+enum { BRUNT_CORNERS = 4 };
+// What a search ends with: particles a[i] and b[i] of the two clouds, between which the nearest points are.
+typedef struct brunt_corners {
+    int count, a[BRUNT_CORNERS], b[BRUNT_CORNERS];
+} brunt_corners;
+
+// Distance between the centres of what two bodies have near a node [m], 0 when their hulls overlap, and its direction
+// from a to b (unit; left alone when 0). `start`: where to look first, any length but 0. `h`: edge of a cell [m].
+double brunt_gjk_centres(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
+                         brunt_corners *corners);
+// The same between as far as they reach, from what the search between their centres along `start` has ended with.
+double brunt_gjk_reaches(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
+                         const brunt_corners *corners);

@@ -2,7 +2,8 @@
 // particles at once.
 //
 // The ball of radius `reach` about a particle is an ellipsoid by now, with the matrix B = reach^2 F F^T: along a unit
-// vector n it ends sqrt(n . B n) from its centre, at the point x + B n / sqrt(n . B n).
+// vector n it ends sqrt(n . B n) from its centre, at the point x + B n / sqrt(n . B n). With half axes a >= b >= c a
+// ball of radius c^2 / a, as it is curved where its longest axis ends, rolls about in it and touches every point.
 #include "contact/distance/particle_cloud.h"
 
 #include <math.h>
@@ -10,15 +11,32 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// Rows of a cloud's memory, `stride` numbers each: place relative to the node, B (xx yy zz yz xz xy), volume, and one
-// to work in.
-enum { X = 0, B = 3, VOLUME = 9, ALONG = 10, ROWS = 11, LANES = 8 };
+// Rows of a cloud's memory, `stride` numbers each: place relative to the node, B (xx yy zz yz xz xy), volume, radius of
+// the ball that rolls about in it, and one to work in.
+enum { X = 0, B = 3, VOLUME = 9, BALL = 10, ALONG = 11, ROWS = 12, LANES = 8 };
 
 static int set_capacity(brunt_cloud *cloud, int count, brunt_error *error) {
     cloud->stride = ((size_t)count + LANES - 1) / LANES * LANES;
     cloud->count = 0;
     return BRUNT_CAPACITY_IN(cloud->data, cloud->bytes, ROWS * cloud->stride, 0, "numbers of particles about a node",
                              error);
+}
+
+// Of ellipsoids in dim dimensions. The eigenvalues of B are within sqrt((dim - 1) / dim) |B - mean| of their mean, in
+// two dimensions just there.
+static void take_ball(double *restrict to, size_t stride, int count, int dim) {
+    const double *restrict b = to + B * stride, share = 1.0 / dim, within = 1 - share;
+    double *restrict ball = to + BALL * stride;
+#pragma omp simd
+    for (int i = 0; i < count; i++) {
+        const double *c = b + i;
+        const double xx = c[0], yy = c[stride], zz = c[2 * stride], yz = c[3 * stride], xz = c[4 * stride],
+                     xy = c[5 * stride], mean = share * (xx + yy + zz), dx = xx - mean, dy = yy - mean,
+                     dz = dim == 3 ? zz - mean : 0,
+                     square = dx * dx + dy * dy + dz * dz + 2 * (yz * yz + xz * xz + xy * xy),
+                     off = sqrt(within * square), low = mean - off;
+        ball[i] = low > 0 ? low / sqrt(mean + off) : 0;
+    }
 }
 
 // Of particles [first, first + count) of three dimensions.
@@ -81,6 +99,7 @@ int brunt_cloud_gather(brunt_body *body, int32_t slot, int node, brunt_cloud *cl
             take_solid(p, first, runs[q].count, to, cloud->stride);
         else
             take_plane(p, first, runs[q].count, to, cloud->stride);
+        take_ball(to, cloud->stride, runs[q].count, p->dim);
         cloud->count += runs[q].count;
     }
     double *volume = cloud->data + VOLUME * cloud->stride, place = 1;
@@ -186,21 +205,36 @@ static double greatest_of(const brunt_cloud *cloud, double *along) {
     return greatest;
 }
 
-double brunt_cloud_extent(const brunt_cloud *cloud, bool reach, const double n[3], double farthest[3]) {
-    for (int a = 0; a < 3; a++) farthest[a] = 0;
-    const size_t stride = cloud->stride;
-    double *along = cloud->data + ALONG * stride;
+double brunt_cloud_extent(const brunt_cloud *cloud, bool reach, const double n[3], int *which) {
+    double *along = cloud->data + ALONG * cloud->stride;
     take_extents(cloud, reach, n, along);
     const double greatest = greatest_of(cloud, along);
-    int i = 0;
-    while (i < cloud->count && along[i] != greatest) i++;
-    if (i == cloud->count) return -INFINITY;
+    *which = 0;
+    while (*which < cloud->count && along[*which] != greatest) ++*which;
+    return *which < cloud->count ? greatest : -INFINITY;
+}
+
+void brunt_cloud_end(const brunt_cloud *cloud, int i, bool reach, const double n[3], double end[3]) {
+    const size_t stride = cloud->stride;
     const double *of = cloud->data + i, *b = of + B * stride;
-    for (int a = 0; a < 3; a++) farthest[a] = of[(size_t)(X + a) * stride];
+    for (int a = 0; a < 3; a++) end[a] = of[(size_t)(X + a) * stride];
+    if (!reach) return;
     const double Bn[3] = {b[0] * n[0] + b[5 * stride] * n[1] + b[4 * stride] * n[2],
                           b[5 * stride] * n[0] + b[stride] * n[1] + b[3 * stride] * n[2],
                           b[4 * stride] * n[0] + b[3 * stride] * n[1] + b[2 * stride] * n[2]};
     const double square = Bn[0] * n[0] + Bn[1] * n[1] + Bn[2] * n[2];
-    for (int a = 0; a < 3 && reach && square > 0; a++) farthest[a] += Bn[a] / sqrt(square);
-    return greatest;
+    for (int a = 0; a < 3 && square > 0; a++) end[a] += Bn[a] / sqrt(square);
+}
+
+double brunt_cloud_ball(const brunt_cloud *cloud) {
+    const double *ball = cloud->data + BALL * cloud->stride;
+    double least = INFINITY;
+    for (int i = 0; i < cloud->count; i++) least = ball[i] < least ? ball[i] : least;
+    return least;
+}
+
+double brunt_cloud_ball_of(const brunt_cloud *cloud, const int *some, int count) {
+    double least = INFINITY;
+    for (int i = 0; i < count; i++) least = fmin(least, cloud->data[BALL * cloud->stride + (size_t)some[i]]);
+    return least;
 }

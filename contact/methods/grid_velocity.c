@@ -246,8 +246,19 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
 
 static double gap_along(const brunt_cloud *a, const brunt_cloud *b, const double n[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
-    double far_a[3], far_b[3];
-    return -brunt_cloud_extent(b, true, back, far_b) - brunt_cloud_extent(a, true, n, far_a);
+    int which;
+    return -brunt_cloud_extent(b, true, back, &which) - brunt_cloud_extent(a, true, n, &which);
+}
+
+// Takes a direction for the normal when it keeps the bodies farther apart. Whether it does.
+static bool take_farther(const job *j, const member *a, int node, const brunt_cloud cloud[2], double direct[3],
+                         double n[3], double *gap) {
+    if (!make_unit(j, a, node, direct)) return false;
+    const double found = gap_along(&cloud[0], &cloud[1], direct);
+    if (!(found > *gap)) return false;
+    *gap = found;
+    memcpy(n, direct, 3 * sizeof *n);
+    return true;
 }
 
 // Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
@@ -269,14 +280,14 @@ static bool make_normal(const job *j, const member *a, const member *b, int node
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
     *gap = gap_along(&cloud[0], &cloud[1], n);
     if (approach * j->m->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return true;
-    for (int centres = 0; centres <= 1; centres++) {
-        double direct[3], found, h = (double)a->body->grid.h;
-        if (!(brunt_gjk_distance(&cloud[0], &cloud[1], h, !centres, between, direct) > 0)) continue;
-        if (!make_unit(j, a, node, direct) || !((found = gap_along(&cloud[0], &cloud[1], direct)) > *gap)) continue;
-        *gap = found;
-        memcpy(n, direct, sizeof direct);
-        break;
-    }
+    const double h = (double)a->body->grid.h;
+    double centres[3], reaches[3];
+    brunt_corners corners;
+    const bool apart = brunt_gjk_centres(&cloud[0], &cloud[1], h, between, centres, &corners) > 0;
+    if (apart && brunt_gjk_reaches(&cloud[0], &cloud[1], h, centres, reaches, &corners) > 0 &&
+        take_farther(j, a, node, cloud, reaches, n, gap))
+        return true;
+    if (apart) take_farther(j, a, node, cloud, centres, n, gap);
     return true;
 }
 

@@ -106,7 +106,7 @@ static void check_extents(brunt_body *body, const brunt_cloud *cloud, int32_t sl
     double n[3] = {draw_between(state, -1, 1), draw_between(state, -1, 1),
                    p->dim == 3 ? draw_between(state, -1, 1) : 0};
     const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    double at[3], most[2] = {-INFINITY, -INFINITY}, far[3];
+    double at[3], most[2] = {-INFINITY, -INFINITY}, end[3];
     for (int a = 0; a < 3; a++) n[a] /= length;
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, at);
     const int count = brunt_extent_runs(body, slot, node, runs);
@@ -118,11 +118,13 @@ static void check_extents(brunt_body *body, const brunt_cloud *cloud, int32_t sl
             most[0] = fmax(most[0], along), most[1] = fmax(most[1], along + brunt_extent_along(body, s, n));
         }
     for (int share = 0; share <= 1; share++) {
-        const double extent = brunt_cloud_extent(cloud, share == 1, n, far);
+        int which;
+        const double extent = brunt_cloud_extent(cloud, share == 1, n, &which);
         if (!count) continue;
+        brunt_cloud_end(cloud, which, share == 1, n, end);
         ck_assert_double_ge(most[1], most[0] + 0.1 * h);
         ck_assert_double_eq_tol(extent, most[share], TOLERANCE(1e-14, 1e-6));
-        ck_assert_double_eq_tol(far[0] * n[0] + far[1] * n[1] + far[2] * n[2], extent, TOLERANCE(1e-14, 1e-6));
+        ck_assert_double_eq_tol(end[0] * n[0] + end[1] * n[1] + end[2] * n[2], extent, TOLERANCE(1e-14, 1e-6));
     }
 }
 
@@ -189,10 +191,16 @@ static void fill(brunt_cloud *cloud, const double at[3], uint64_t *state) {
     }
 }
 
-static double apart_along(const brunt_cloud *a, const brunt_cloud *b, const double n[3]) {
+static double apart_along(const brunt_cloud *a, const brunt_cloud *b, bool reach, const double n[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
-    double far[3];
-    return -brunt_cloud_extent(b, false, back, far) - brunt_cloud_extent(a, false, n, far);
+    int which;
+    return -brunt_cloud_extent(b, reach, back, &which) - brunt_cloud_extent(a, reach, n, &which);
+}
+
+static void draw_direction(int dim, uint64_t *state, double n[3]) {
+    double length = 0;
+    for (int a = 0; a < 3; a++) n[a] = a < dim ? draw_between(state, -1, 1) : 0, length += n[a] * n[a];
+    for (int a = 0; a < 3; a++) n[a] /= sqrt(length);
 }
 
 // The distance is that along its direction, along no other are they farther apart, and swapped it is the same.
@@ -205,26 +213,102 @@ START_TEST(no_direction_parts_two_clouds_more) {
         double at[3], n[3], m[3], start[3];
         for (int a = 0; a < 3; a++) at[a] = draw_between(&state, -2.2, 2.2), start[a] = draw_between(&state, -1, 1);
         fill(&cloud[0], origin, &state), fill(&cloud[1], at, &state);
-        const double d = brunt_gjk_distance(&cloud[0], &cloud[1], h, false, at, n);
-        const double other = brunt_gjk_distance(&cloud[1], &cloud[0], h, false, start, m);
+        brunt_corners corners;
+        const double d = brunt_gjk_centres(&cloud[0], &cloud[1], h, at, n, &corners);
+        const double other = brunt_gjk_centres(&cloud[1], &cloud[0], h, start, m, &corners);
         ck_assert_double_eq_tol(d, other, 1e-7);
         if (d > 0) {
-            ck_assert_double_eq_tol(apart_along(&cloud[0], &cloud[1], n), d, 1e-12);
+            ck_assert_double_eq_tol(apart_along(&cloud[0], &cloud[1], false, n), d, 1e-12);
             for (int a = 0; a < 3; a++) ck_assert_double_eq_tol(n[a], -m[a], 1e-3);
             apart++;
         } else {
             together++;
         }
         for (int q = 0; q < 30; q++) {
-            double length = 0;
-            for (int a = 0; a < 3; a++) m[a] = draw_between(&state, -1, 1), length += m[a] * m[a];
-            for (int a = 0; a < 3; a++) m[a] /= sqrt(length);
-            ck_assert_double_le(apart_along(&cloud[0], &cloud[1], m), d + 1e-7);
+            draw_direction(3, &state, m);
+            ck_assert_double_le(apart_along(&cloud[0], &cloud[1], false, m), d + 1e-7);
         }
     }
     ck_assert_int_gt(apart, TRIES);
     ck_assert_int_gt(together, TRIES);
     brunt_cloud_free(&cloud[0]), brunt_cloud_free(&cloud[1]);
+}
+END_TEST
+
+// ------------------------------------------------------------------------------------------ of ellipsoids
+
+// Particles about a random node near the face of a body at x = `face`.
+static void gather_face(brunt_body *body, double face, uint64_t *state, brunt_cloud *cloud) {
+    for (;;) {
+        const int32_t slot = draw_whole(state, body->grid.slot_count);
+        const int node = draw_whole(state, BRUNT_BLOCK_NODES);
+        double at[3];
+        brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, at);
+        if (fabs(at[0] - face) > 0.7 * h) continue;
+        ck_assert_int_eq(brunt_cloud_gather(body, slot, node, cloud, NULL), BRUNT_OK);
+        if (cloud->count > 4) return;
+    }
+}
+
+// Between what bounds the distance is, by the way of M. Frank and P. Wolfe: each step
+// along the line to the point that goes farthest.
+static void bound_distance(const brunt_cloud cloud[2], const double start[3], double bound[2]) {
+    double v[3] = {start[0], start[1], start[2]};
+    bound[0] = -INFINITY, bound[1] = INFINITY;
+    for (int k = 0; k < 400; k++) {
+        const double size = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        if (k) bound[1] = fmin(bound[1], size);
+        if (!(size > 1e-12)) return;
+        const double n[3] = {v[0] / size, v[1] / size, v[2] / size}, back[3] = {-n[0], -n[1], -n[2]};
+        double end[2][3], along = 0, square = 0;
+        for (int side = 0; side < 2; side++) {
+            int which;
+            brunt_cloud_extent(&cloud[side], true, side ? back : n, &which);
+            brunt_cloud_end(&cloud[side], which, true, side ? back : n, end[side]);
+        }
+        bound[0] = fmax(bound[0], apart_along(&cloud[0], &cloud[1], true, n));
+        for (int a = 0; a < 3; a++) {
+            const double w = end[1][a] - end[0][a];
+            along -= v[a] * (w - v[a]), square += (w - v[a]) * (w - v[a]);
+            end[0][a] = w;
+        }
+        const double share = k ? fmin(1, fmax(0, along / square)) : 1;
+        for (int a = 0; a < 3; a++) v[a] += share * (end[0][a] - v[a]);
+    }
+}
+
+// Bodies whose faces are apart by a tenth of a cell, or overlap by that: the distance is between its bounds and that
+// along its direction, none beside parts them more, and swapped it is the same.
+START_TEST(ellipsoids_are_as_far_apart_as_any_direction_says) {
+    uint64_t state = 5 + (uint64_t)_i;
+    const int dim = 2 + _i;
+    brunt_world *world = make_block((form){dim, BRUNT_QUADRATIC, false}, &state);
+    brunt_body *block = &world->bodies.mpm[0], *other = &world->bodies.mpm[1];
+    if (strcmp(block->name, "block")) block = &world->bodies.mpm[1], other = &world->bodies.mpm[0];
+    brunt_cloud cloud[2] = {{.count = 0}};
+    int apart = 0, together = 0;
+    for (int k = 0; k < 10 * TRIES; k++) {
+        const double start[3] = {1}, back[3] = {-1};
+        double n[3], m[3], bound[2];
+        gather_face(block, 0.63, &state, &cloud[0]), gather_face(other, 2, &state, &cloud[1]);
+        const double by = draw_between(&state, -0.1, 0.1) * h - apart_along(&cloud[0], &cloud[1], true, start);
+        for (int i = 0; i < cloud[1].count; i++) cloud[1].data[i] += by; // the first row: x
+        brunt_corners corners, turned;
+        ck_assert(brunt_gjk_centres(&cloud[0], &cloud[1], h, start, n, &corners) > 0);
+        ck_assert(brunt_gjk_centres(&cloud[1], &cloud[0], h, back, m, &turned) > 0);
+        const double d = brunt_gjk_reaches(&cloud[0], &cloud[1], h, n, n, &corners),
+                     swapped = brunt_gjk_reaches(&cloud[1], &cloud[0], h, m, m, &turned);
+        ck_assert_double_eq_tol(d, swapped, 1e-7 * h);
+        bound_distance(cloud, start, bound);
+        ck_assert_double_ge(d, bound[0] - 1e-7 * h);
+        ck_assert_double_le(d, bound[1] + 1e-7 * h);
+        if (d > 0) ck_assert_double_eq_tol(apart_along(&cloud[0], &cloud[1], true, n), d, 1e-12 * h);
+        apart += d > 0, together += d == 0;
+    }
+    ck_assert_int_gt(apart, TRIES);
+    ck_assert_int_gt(together, TRIES);
+    brunt_cloud_free(&cloud[0]), brunt_cloud_free(&cloud[1]);
+    brunt_world_destroy(world);
 }
 END_TEST
 
@@ -235,6 +319,7 @@ int main(void) {
     tcase_add_loop_test(all, a_cloud_is_what_the_node_feels, 0, BRUNT_COUNT(forms));
     tcase_add_test(all, what_is_freed_keeps_its_place);
     tcase_add_test(all, no_direction_parts_two_clouds_more);
+    tcase_add_loop_test(all, ellipsoids_are_as_far_apart_as_any_direction_says, 0, 2);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
