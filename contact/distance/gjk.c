@@ -23,7 +23,7 @@ static const double OVERLAP = 1e-9;      // cells: nearer to the origin than thi
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Solves the n by n system (n <= 3) by Cramer's rule; false when it is singular.
-static bool solve(int n, double m[3][3], const double r[3], double x[3]) {
+static inline __attribute__((always_inline)) bool solve(int n, double m[3][3], const double r[3], double x[3]) {
     double size = 0, det;
     for (int i = 0; i < n; i++) size = fmax(size, m[i][i]);
     if (n == 1) {
@@ -65,10 +65,9 @@ typedef struct simplex {
     double v[3];
 } simplex;
 
-// Drops the corners that the nearest point does not need. The last one is nearer than the hull of the others was: every
-// face that it is a corner of is tried, 8 at most.
-static void find_nearest(simplex *s) {
-    const int others = s->count - 1;
+// Finds the point nearest the origin, and drops the corners that it does not need. The last one is nearer than the hull
+// of the others was: every face that it is a corner of is tried, 8 at most.
+static inline __attribute__((always_inline)) void try_faces(simplex *s, int others) {
     const corner *last = &s->corner[others];
     double e[3][3], gram[3][3], right[3], best = INFINITY;
     int best_faces = 0;
@@ -103,6 +102,15 @@ static void find_nearest(simplex *s) {
     for (int i = 0; i <= others; i++)
         if (i == others || best_faces >> i & 1) s->corner[kept++] = s->corner[i];
     s->count = kept;
+}
+
+static void find_nearest(simplex *s) {
+    switch (s->count) { // each unrolled
+    case 1: memcpy(s->v, s->corner[0].x, sizeof s->v); break;
+    case 2: try_faces(s, 1); break;
+    case 3: try_faces(s, 2); break;
+    default: try_faces(s, 3);
+    }
 }
 
 // What is looked for.
@@ -157,19 +165,10 @@ static double search_from(const search *in, simplex *s, double n[3]) {
     return bound;
 }
 
-double brunt_gjk_centres(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
-                         brunt_corners *corners) {
-    const search in = {.a = a, .b = b, .h = h};
-    simplex s = {.v = {start[0], start[1], start[2]}};
-    const double distance = search_from(&in, &s, n);
-    corners->count = s.count < BRUNT_CORNERS ? s.count : 0;
-    for (int i = 0; i < corners->count; i++) corners->a[i] = s.corner[i].a, corners->b[i] = s.corner[i].b;
-    return distance;
-}
-
 // The simplex of the pairs of particles given. Whether they alone tell that the bodies overlap.
 static bool begin(const search *in, const double n[3], const brunt_corners *corners, simplex *s) {
-    *s = (simplex){.v = {n[0], n[1], n[2]}};
+    s->count = 0;
+    memcpy(s->v, n, sizeof s->v);
     for (int i = 0; i < corners->count; i++) {
         corner *next = &s->corner[s->count];
         next->a = corners->a[i], next->b = corners->b[i];
@@ -180,6 +179,17 @@ static bool begin(const search *in, const double n[3], const brunt_corners *corn
         if (overlaps(in, s)) return true;
     }
     return false;
+}
+
+double brunt_gjk_centres(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
+                         brunt_corners *corners) {
+    const search in = {.a = a, .b = b, .h = h};
+    simplex s;
+    const bool together = begin(&in, start, corners, &s);
+    const double distance = together ? 0 : search_from(&in, &s, n);
+    corners->count = distance > 0 ? s.count : 0;
+    for (int i = 0; i < corners->count; i++) corners->a[i] = s.corner[i].a, corners->b[i] = s.corner[i].b;
+    return distance;
 }
 
 double brunt_gjk_reaches(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],

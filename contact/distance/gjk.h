@@ -10,7 +10,8 @@ typedef struct brunt_corners {
 } brunt_corners;
 
 // Distance between the centres of what two bodies have near a node [m], 0 when their hulls overlap, and its direction
-// from a to b (unit; left alone when 0). `start`: where to look first, any length but 0. `h`: edge of a cell [m].
+// from a to b (unit; left alone when 0). `start`: where to look first, any length but 0; `corners`: those to begin
+// with, where there are any, and those that the search ends with. `h`: edge of a cell [m].
 double brunt_gjk_centres(const brunt_cloud *a, const brunt_cloud *b, double h, const double start[3], double n[3],
                          brunt_corners *corners);
 // The same between as far as they reach, from what the search between their centres along `start` has ended with.

@@ -2,7 +2,7 @@
 //
 // Only slots that two or more bodies have alive are looked at, and only nodes where two have mass. There, per pair:
 //   normal   from a to b, along -grad phi_a + grad phi_b of the volume fractions: n_ba = -n_ab to the bit
-//   gap      between the surfaces as the particles near the node have them (particle_cloud.c), not as the kernels feel
+//   gap      between the surfaces as the particles near the node have them (node_gap.c), not as the kernels feel
 //   them approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it;
 //   bodies not
 //            yet within reach are left alone
@@ -22,7 +22,7 @@
 
 #include "contact/constraint/coulomb.h"
 #include "contact/methods/method.h"
-#include "contact/distance/gjk.h"
+#include "contact/methods/node_gap.h"
 #include "contact/planes/boundary.h"
 #include "contact/planes/followed.h"
 #include "base/array.h"
@@ -41,12 +41,6 @@ typedef struct shared_slot {
 typedef struct group {
     int32_t first, count, account;
 } group;
-// Of each thread: two bodies near a node, and what went wrong at one of its nodes.
-typedef struct thread_work {
-    brunt_cloud cloud[2];
-    brunt_error error;
-} thread_work;
-
 typedef struct box {
     int32_t low[3], high[3];
 } box;
@@ -70,7 +64,7 @@ struct brunt_contact_workspace {
     brunt_impulse_account *accounts;
     size_t accounts_capacity;
     int32_t account_count;
-    thread_work *thread;
+    brunt_node_gap *thread; // of each thread
     int thread_count;
 };
 
@@ -94,8 +88,7 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace->shared);
     brunt_free(workspace->groups);
     brunt_free(workspace->accounts);
-    for (int t = 0; t < workspace->thread_count; t++)
-        for (int k = 0; k < 2; k++) brunt_cloud_free(&workspace->thread[t].cloud[k]);
+    for (int t = 0; t < workspace->thread_count; t++) brunt_node_gap_free(&workspace->thread[t]);
     brunt_free(workspace->thread);
     brunt_free(workspace);
 }
@@ -226,71 +219,6 @@ typedef struct member {
     double v[3], inverse[3], applied[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
 } member;
 
-// Unit vector along n with the parts taken out that a body cut by symmetry planes cannot know: its image has no
-// particles.
-static bool make_unit(const job *j, const member *a, int node, double n[3]) {
-    int local[3];
-    const brunt_grid *grid = &a->body->grid;
-    brunt_node_local(grid, node, local);
-    for (int m = 0; m < j->m->symmetry_count; m++) {
-        int axis = j->m->symmetry[m].axis;
-        if (j->m->symmetry[m].sticks) continue; // the nodes behind it follow, and what is on it rests
-        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->m->symmetry[m].node;
-        if (away >= -1 && away <= 1) n[axis] = 0;
-    }
-    double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    if (!(size > 0) || !isfinite(size)) return false;
-    for (int k = 0; k < 3; k++) n[k] /= size;
-    return true;
-}
-
-static double gap_along(const brunt_cloud *a, const brunt_cloud *b, const double n[3]) {
-    const double back[3] = {-n[0], -n[1], -n[2]};
-    int which;
-    return -brunt_cloud_extent(b, true, back, &which) - brunt_cloud_extent(a, true, n, &which);
-}
-
-// Takes a direction for the normal when it keeps the bodies farther apart. Whether it does.
-static bool take_farther(const job *j, const member *a, int node, const brunt_cloud cloud[2], double direct[3],
-                         double n[3], double *gap) {
-    if (!make_unit(j, a, node, direct)) return false;
-    const double found = gap_along(&cloud[0], &cloud[1], direct);
-    if (!(found > *gap)) return false;
-    *gap = found;
-    memcpy(n, direct, 3 * sizeof *n);
-    return true;
-}
-
-// Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
-// there it finds bodies touching that graze a third of a cell apart, and a block sliding over another is held by its
-// edges. So where the mean normal finds contact, the direction that keeps the bodies farthest apart decides: the one of
-// their true distance, or, when they touch, that between the hulls of the particles' centres, which are apart still.
-// Whether anything tells the bodies apart.
-static bool make_normal(const job *j, const member *a, const member *b, int node, thread_work *thread, double n[3],
-                        double *gap) {
-    brunt_cloud *cloud = thread->cloud;
-    double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
-    if (brunt_cloud_gather(a->body, a->slot, node, &cloud[0], &thread->error) ||
-        brunt_cloud_gather(b->body, b->slot, node, &cloud[1], &thread->error))
-        return false;
-    brunt_cloud_gradient(&cloud[0], &a->body->grid, ga, ca);
-    brunt_cloud_gradient(&cloud[1], &b->body->grid, gb, cb);
-    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
-    if (!make_unit(j, a, node, n)) return false;
-    for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
-    *gap = gap_along(&cloud[0], &cloud[1], n);
-    if (approach * j->m->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return true;
-    const double h = (double)a->body->grid.h;
-    double centres[3], reaches[3];
-    brunt_corners corners;
-    const bool apart = brunt_gjk_centres(&cloud[0], &cloud[1], h, between, centres, &corners) > 0;
-    if (apart && brunt_gjk_reaches(&cloud[0], &cloud[1], h, centres, reaches, &corners) > 0 &&
-        take_farther(j, a, node, cloud, reaches, n, gap))
-        return true;
-    if (apart) take_farther(j, a, node, cloud, centres, n, gap);
-    return true;
-}
-
 static double relative(const member *members, const node_contact *m, double v[3]) {
     double along = 0;
     for (int k = 0; k < 3; k++) {
@@ -347,16 +275,19 @@ static void weigh_contact(const member *a, const member *b, node_contact *m) {
     }
 }
 
-static member make_member(const job *j, brunt_body *body, const shared_slot *s, int node, real *at, int entry) {
-    member m = {.body = body, .slot = s->slot, .node = at, .entry = entry};
-    m.rests = j->follows && brunt_followed_rests(j->m, body, s->slot, node);
-    for (int a = 0; a < body->grid.dim; a++) {
-        const bool fixed = m.rests || brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
-        m.v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
-        m.inverse[a] = fixed ? 0 : 1 / (double)at[0];
-        m.fixed |= fixed;
+static void make_member(const job *j, brunt_body *body, const shared_slot *s, int node, real *at, int entry,
+                        member *m) {
+    m->body = body, m->slot = s->slot, m->node = at, m->entry = entry, m->fixed = false;
+    m->rests = j->follows && brunt_followed_rests(j->m, body, s->slot, node);
+    for (int a = 0; a < 3; a++) {
+        const bool there = a < body->grid.dim,
+                   fixed = there &&
+                           (m->rests || brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a));
+        m->v[a] = there ? (double)at[BRUNT_NODE_VELOCITY + a] : 0;
+        m->inverse[a] = there && !fixed ? 1 / (double)at[0] : 0;
+        m->applied[a] = 0;
+        m->fixed |= fixed;
     }
-    return m;
 }
 
 // The planes near a node that some of the bodies there have images by.
@@ -424,7 +355,7 @@ typedef struct node_contacts {
     bool fixed; // something holds one of them
 } node_contacts;
 
-static void find_members(const job *j, const group *g, int node, thread_work *thread, node_contacts *here) {
+static void find_members(const job *j, const group *g, int node, brunt_node_gap *thread, node_contacts *here) {
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
@@ -434,12 +365,12 @@ static void find_members(const job *j, const group *g, int node, thread_work *th
             here->count = 0;
             return;
         }
-        here->members[here->count++] = make_member(j, &j->bodies[s->body], s, node, at, i);
+        make_member(j, &j->bodies[s->body], s, node, at, i, &here->members[here->count++]);
     }
 }
 
 // The contact of members a and b, if they meet there.
-static void add_contact(const job *j, const group *g, int node, int a, int b, thread_work *thread,
+static void add_contact(const job *j, const group *g, int node, int a, int b, brunt_node_gap *thread,
                         node_contacts *here) {
     const member *one = &here->members[a], *other = &here->members[b];
     const int32_t pair = pair_between(j, (int)(one->body - j->bodies), (int)(other->body - j->bodies));
@@ -452,7 +383,9 @@ static void add_contact(const job *j, const group *g, int node, int a, int b, th
                         .friction = j->m->pairs[pair].friction,
                         .law = j->law[j->m->pairs[pair].method]};
     double gap = 0;
-    if (!m->law && !make_normal(j, one, other, node, thread, m->n, &gap)) return;
+    const brunt_node_side sides[2] = {{one->body, one->slot, low, one->v}, {other->body, other->slot, high, other->v}};
+    thread->alone = here->count == 2;
+    if (!m->law && !brunt_node_gap_find(thread, j->m, sides, node, m->n, &gap)) return;
     m->target = -fmax(gap, 0) / j->m->dt;
     weigh_contact(one, other, m);
     here->fixed |= one->fixed || other->fixed;
@@ -513,7 +446,7 @@ static void find_bearers(const job *j, const group *g, int node, const node_cont
     }
 }
 
-static void meet_at_node(const job *j, const group *g, int node, thread_work *thread) {
+static void meet_at_node(const job *j, const group *g, int node, brunt_node_gap *thread) {
     node_contacts here;
     here.count = here.contact_count = 0, here.fixed = false;
     find_members(j, g, node, thread, &here);
@@ -536,11 +469,39 @@ static void meet_at_node(const job *j, const group *g, int node, thread_work *th
     for (int i = 0; i < here.count; i++) scatter_node(j, &here.members[i], node, &near);
 }
 
+// Which nodes of a block have mass of two bodies, and how far they go along the last axis. Whether there are any.
+static bool find_shared_nodes(const job *j, const group *g, bool shared[BRUNT_BLOCK_NODES], int nodes[2]) {
+    uint8_t count[BRUNT_BLOCK_NODES] = {0};
+    const brunt_grid *any = &j->bodies[0].grid;
+    for (int32_t i = 0; i < g->count; i++) {
+        const shared_slot *s = &j->w->shared[g->first + i];
+        const real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot);
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
+            count[node] += at[node * BRUNT_NODE_REALS] > 0 && count[node] < 2;
+    }
+    nodes[0] = any->side, nodes[1] = -1;
+    for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
+        int local[3];
+        brunt_node_local(any, node, local);
+        const int at = local[any->dim - 1];
+        shared[node] = count[node] > 1;
+        if (shared[node] && at < nodes[0]) nodes[0] = at;
+        if (shared[node] && at > nodes[1]) nodes[1] = at;
+    }
+    return nodes[1] >= 0;
+}
+
+static void meet_in_block(const job *j, const group *g, brunt_node_gap *thread) {
+    bool shared[BRUNT_BLOCK_NODES];
+    int nodes[2];
+    if (!find_shared_nodes(j, g, shared, nodes) || brunt_node_gap_begin(thread, g->count, nodes)) return;
+    for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
+        if (shared[node]) meet_at_node(j, g, node, thread);
+}
+
 static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const job *j = context;
-    for (int64_t q = begin; q < end; q++)
-        for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
-            meet_at_node(j, &j->w->groups[q], node, &j->w->thread[worker]);
+    for (int64_t q = begin; q < end; q++) meet_in_block(j, &j->w->groups[q], &j->w->thread[worker]);
 }
 
 static int make_threads(brunt_contact_workspace *w, int threads, brunt_error *error) {

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "contact/distance/particle_extent.h"
 #include "grid/bspline.h"
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -107,7 +108,7 @@ int brunt_neighbours_find(brunt_body *body, double range, const double x[3], bru
 }
 
 int brunt_neighbours_centres(brunt_neighbours *list, double range, brunt_error *error) {
-    if (brunt_cloud_points(&list->centres, list->near_count, error)) return BRUNT_FAILED;
+    if (brunt_cloud_reserve(&list->centres, list->near_count, error)) return BRUNT_FAILED;
     for (int32_t i = 0; i < list->near_count; i++)
         if (dot(list->near[i].d, list->near[i].d) < range * range) brunt_cloud_point(&list->centres, list->near[i].d);
     return BRUNT_OK;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "contact/distance/particle_cloud.h"
+#include "mpm/mpm_body.h"
 
 // Particles of a body about a place.
 typedef struct brunt_neighbour {

@@ -183,7 +183,7 @@ static int least_distance(const look *l, touch_list *list, double n[3], bool *ap
     if (brunt_neighbours_centres(&list->own, OWN * l->slave->spacing, error) ||
         brunt_neighbours_centres(&list->other, l->range, error))
         return BRUNT_FAILED;
-    brunt_corners corners;
+    brunt_corners corners = {.count = 0};
     *apart =
         brunt_gjk_centres(&list->other.centres, &list->own.centres, (double)l->slave->grid.h, start, n, &corners) > 0;
     return BRUNT_OK;

@@ -86,3 +86,46 @@ BRUNT_INLINE real lanes_min_of(lanes a) {
     for (int l = 1; l < BRUNT_LANES; l++) s = a[l] < s ? a[l] : s;
     return s;
 }
+
+// Doubles, whatever a real is: as many as a register holds, and masks of them.
+#ifdef BRUNT_FLOAT
+enum { BRUNT_DOUBLES = BRUNT_LANES > 1 ? BRUNT_LANES / 2 : 1 };
+#else
+enum { BRUNT_DOUBLES = BRUNT_LANES };
+#endif
+typedef double doubles __attribute__((vector_size(BRUNT_DOUBLES * sizeof(double))));
+typedef int64_t doubles_mask __attribute__((vector_size(BRUNT_DOUBLES * sizeof(double))));
+typedef double doubles_unaligned
+    __attribute__((vector_size(BRUNT_DOUBLES * sizeof(double)), aligned(sizeof(double)), may_alias));
+BRUNT_INLINE doubles doubles_load(const double *p) { return (doubles) * (const doubles_unaligned *)p; }
+BRUNT_INLINE void doubles_store(double *p, doubles a) { *(doubles_unaligned *)p = a; }
+BRUNT_INLINE doubles doubles_set(double a) { return a - (doubles){0}; }
+BRUNT_INLINE doubles doubles_select(doubles_mask m, doubles a, doubles b) {
+    return (doubles)(((doubles_mask)a & m) | ((doubles_mask)b & ~m));
+}
+BRUNT_INLINE doubles doubles_max(doubles a, doubles b) { return doubles_select(a > b, a, b); }
+BRUNT_INLINE doubles doubles_sqrt(doubles a) {
+    doubles r = a;
+    for (int l = 0; l < BRUNT_DOUBLES; l++) r[l] = __builtin_sqrt(a[l]);
+    return r;
+}
+
+BRUNT_INLINE doubles_mask doubles_lane(void) {
+    doubles_mask lane = {0};
+    for (int l = 0; l < BRUNT_DOUBLES; l++) lane[l] = l;
+    return lane;
+}
+BRUNT_INLINE doubles_mask doubles_mask_select(doubles_mask m, doubles_mask a, doubles_mask b) {
+    return (a & m) | (b & ~m);
+}
+BRUNT_INLINE doubles_mask doubles_set_mask(int64_t a) { return a - (doubles_mask){0}; }
+
+// Of reals.
+BRUNT_INLINE doubles doubles_of(const real *p) {
+#ifdef BRUNT_FLOAT
+    typedef real reals __attribute__((vector_size(BRUNT_DOUBLES * sizeof(real)), aligned(sizeof(real)), may_alias));
+    return __builtin_convertvector(*(const reals *)p, doubles);
+#else
+    return doubles_load(p); // gcc 12 converts a type to itself one by one
+#endif
+}

@@ -9,20 +9,13 @@
 #include "base/simd.h"
 #include "grid/bspline.h"
 
-#ifdef BRUNT_FLOAT
-enum { WIDTH = BRUNT_LANES > 1 ? BRUNT_LANES / 2 : 1 };
-#else
-enum { WIDTH = BRUNT_LANES };
-#endif
-typedef double wide __attribute__((vector_size(WIDTH * sizeof(double))));
-
 // A sum and what was rounded off it.
 typedef struct exact_sum {
-    wide sum, rest;
+    doubles sum, rest;
 } exact_sum;
 
-BRUNT_INLINE void add(exact_sum *to, wide a) {
-    const wide sum = to->sum + a, part = sum - to->sum;
+BRUNT_INLINE void add(exact_sum *to, doubles a) {
+    const doubles sum = to->sum + a, part = sum - to->sum;
     to->rest += (to->sum - (sum - part)) + (a - part);
     to->sum = sum;
 }
@@ -30,7 +23,7 @@ BRUNT_INLINE void add(exact_sum *to, wide a) {
 // Of all lanes, in their order.
 static double total(const exact_sum *of) {
     double sum = 0, rest = 0;
-    for (int l = 0; l < WIDTH; l++) {
+    for (int l = 0; l < BRUNT_DOUBLES; l++) {
         const double a = of->sum[l], more = sum + a, part = more - sum;
         rest += ((sum - (more - part)) + (a - part)) + of->rest[l];
         sum = more;
@@ -38,16 +31,11 @@ static double total(const exact_sum *of) {
     return sum + rest;
 }
 
-BRUNT_INLINE wide root(wide a) {
-    for (int l = 0; l < WIDTH; l++) a[l] = sqrt(a[l]);
-    return a;
-}
-
 typedef struct audit_sums {
     exact_sum mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular;
 } audit_sums;
 
-// Where up to WIDTH particles are: all behind `first`, or one by one in `slots`.
+// Where up to BRUNT_DOUBLES particles are: all behind `first`, or one by one in `slots`.
 typedef struct group {
     bool whole;
     int64_t first;
@@ -55,43 +43,41 @@ typedef struct group {
     int count;
 } group;
 
-typedef real narrow __attribute__((vector_size(WIDTH * sizeof(real)), aligned(sizeof(real)), may_alias));
-
 // What is not there has the first one's numbers, and no mass.
-BRUNT_INLINE wide read(const group *g, const real *from) {
-    if (g->whole) return __builtin_convertvector(*(const narrow *)(from + g->first), wide);
-    wide a = {0};
-    for (int l = 0; l < WIDTH; l++) a[l] = (double)from[g->slots[l < g->count ? l : 0]];
+BRUNT_INLINE doubles read(const group *g, const real *from) {
+    if (g->whole) return doubles_of(from + g->first);
+    doubles a = {0};
+    for (int l = 0; l < BRUNT_DOUBLES; l++) a[l] = (double)from[g->slots[l < g->count ? l : 0]];
     return a;
 }
 
-BRUNT_INLINE wide read_mass(const group *g, const real *mass) {
-    wide a = read(g, mass);
-    for (int l = 0; l < WIDTH; l++)
+BRUNT_INLINE doubles read_mass(const group *g, const real *mass) {
+    doubles a = read(g, mass);
+    for (int l = 0; l < BRUNT_DOUBLES; l++)
         if (l >= g->count) a[l] = 0;
     return a;
 }
 
 // The second moment of the kernel about a particle along one axis [m^2]: of all alike, but for the linear one.
-BRUNT_INLINE wide read_moment(const group *g, const brunt_grid *grid, const real *place, double origin) {
+BRUNT_INLINE doubles read_moment(const group *g, const brunt_grid *grid, const real *place, double origin) {
     const lanes any = bspline_moment(2, (lanes){0}, grid->h, grid->inv_h);
-    if (grid->order == 2) return (double)any[0] - (wide){0};
-    wide at = read(g, place);
-    for (int l = 0; l < WIDTH; l++)
+    if (grid->order == 2) return (double)any[0] - (doubles){0};
+    doubles at = read(g, place);
+    for (int l = 0; l < BRUNT_DOUBLES; l++)
         at[l] = (double)bspline_moment(grid->order, lanes_set((real)at[l] - (real)origin), grid->h, grid->inv_h)[0];
     return at;
 }
 
 // B = C D of the affine part, by row and column. The square of what it moves with [m^2/s^2].
-BRUNT_INLINE wide read_affine(const group *g, brunt_body *body, wide B[3][3]) {
+BRUNT_INLINE doubles read_affine(const group *g, brunt_body *body, doubles B[3][3]) {
     brunt_particles *p = &body->particles;
     const brunt_grid *grid = &body->grid;
     real *const *C = brunt_field(p, BRUNT_FIELD_affine), *const *place = brunt_kernel_position(p);
-    wide square = {0};
+    doubles square = {0};
     for (int k = 0; k < p->dim; k++) {
-        const wide D = read_moment(g, grid, place[k], grid->origin[k]);
+        const doubles D = read_moment(g, grid, place[k], grid->origin[k]);
         for (int r = 0; r < p->dim; r++) {
-            const wide c = read(g, C[r * p->dim + k]);
+            const doubles c = read(g, C[r * p->dim + k]);
             B[r][k] = c * D;
             square += c * c * D;
         }
@@ -100,10 +86,10 @@ BRUNT_INLINE wide read_affine(const group *g, brunt_body *body, wide B[3][3]) {
 }
 
 // The affine part has the lever arms of the undeformed kernel; F takes them to where they are.
-static void deform(const group *g, brunt_particles *p, wide B[3][3]) {
+static void deform(const group *g, brunt_particles *p, doubles B[3][3]) {
     real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
     for (int r = 0; r < p->dim; r++) {
-        wide row[3] = {{0}};
+        doubles row[3] = {{0}};
         for (int c = 0; c < p->dim; c++)
             for (int k = 0; k < p->dim; k++) row[c] += B[r][k] * read(g, F[c * p->dim + k]);
         memcpy(B[r], row, sizeof row);
@@ -113,14 +99,14 @@ static void deform(const group *g, brunt_particles *p, wide B[3][3]) {
 BRUNT_INLINE void add_group(audit_sums *to, brunt_body *body, const group *g, int dim) {
     brunt_particles *p = &body->particles;
     real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *v = brunt_field(p, BRUNT_FIELD_velocity);
-    const wide m = read_mass(g, brunt_field(p, BRUNT_FIELD_mass)[0]);
-    wide X[3] = {{0}}, V[3] = {{0}}, B[3][3] = {{{0}}}, square = {0}, size = {0};
+    const doubles m = read_mass(g, brunt_field(p, BRUNT_FIELD_mass)[0]);
+    doubles X[3] = {{0}}, V[3] = {{0}}, B[3][3] = {{{0}}}, square = {0}, size = {0};
     for (int k = 0; k < dim; k++) X[k] = read(g, x[k]), V[k] = read(g, v[k]), square += V[k] * V[k];
     if (p->field[BRUNT_FIELD_affine].components) square += read_affine(g, body, B);
     if (brunt_total_lagrangian(p)) deform(g, p, B);
     add(&to->mass, m);
     add(&to->kinetic, 0.5 * m * square);
-    add(&to->scale_linear, m * root(square));
+    add(&to->scale_linear, m * doubles_sqrt(square));
     if (brunt_axisymmetric(p)) { // the circle's sums; only sizes are left of what cancels
         add(&to->linear[1], m * V[1]);
         add(&to->centre[1], m * X[1]);
@@ -135,7 +121,7 @@ BRUNT_INLINE void add_group(audit_sums *to, brunt_body *body, const group *g, in
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         add(&to->angular[k], m * (X[i] * V[j] - X[j] * V[i] + (B[j][i] - B[i][j])));
     }
-    add(&to->scale_angular, m * root(square * size));
+    add(&to->scale_angular, m * doubles_sqrt(square * size));
 }
 
 static brunt_audit read_sums(const audit_sums *sums) {
@@ -151,17 +137,17 @@ static brunt_audit read_sums(const audit_sums *sums) {
     return a;
 }
 
-// The next particles, WIDTH of them while there are as many, from place `*n` on of `slots` (NULL: of all): whatever
-// padding lies between, they are the same together.
+// The next particles, BRUNT_DOUBLES of them while there are as many, from place `*n` on of `slots` (NULL: of all):
+// whatever padding lies between, they are the same together.
 BRUNT_INLINE group next_group(const brunt_particles *p, const int64_t *slots, int64_t count, int64_t *n,
-                              int64_t here[WIDTH]) {
-    group g = {.whole = !slots && *n + WIDTH <= count, .first = *n, .slots = here, .count = WIDTH};
-    for (int l = 0; g.whole && l < WIDTH; l++) g.whole = p->id[*n + l] >= 0;
+                              int64_t here[BRUNT_DOUBLES]) {
+    group g = {.whole = !slots && *n + BRUNT_DOUBLES <= count, .first = *n, .slots = here, .count = BRUNT_DOUBLES};
+    for (int l = 0; g.whole && l < BRUNT_DOUBLES; l++) g.whole = p->id[*n + l] >= 0;
     if (g.whole) {
-        *n += WIDTH;
+        *n += BRUNT_DOUBLES;
         return g;
     }
-    for (g.count = 0; g.count < WIDTH && *n < count; ++*n) {
+    for (g.count = 0; g.count < BRUNT_DOUBLES && *n < count; ++*n) {
         const int64_t s = slots ? slots[*n] : *n;
         if (p->id[s] >= 0) here[g.count++] = s; // else padding, or left in the last step
     }
@@ -173,10 +159,10 @@ BRUNT_INLINE brunt_audit sum_slots(brunt_body *body, const int64_t *slots, int64
     audit_sums sums;
     memset(&sums, 0, sizeof sums);
     for (int64_t n = 0; n < count;) {
-        int64_t here[WIDTH];
+        int64_t here[BRUNT_DOUBLES];
         const group g = next_group(&body->particles, slots, count, &n, here);
         if (g.whole)
-            add_group(&sums, body, &(group){.whole = true, .first = g.first, .count = WIDTH}, dim);
+            add_group(&sums, body, &(group){.whole = true, .first = g.first, .count = BRUNT_DOUBLES}, dim);
         else if (g.count)
             add_group(&sums, body, &g, dim);
     }

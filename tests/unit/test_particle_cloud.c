@@ -2,6 +2,8 @@
 // the node and none twice, how far they extend, the gradient of their volume, and the distance of two such clouds.
 #include "base/array.h"
 #include "contact/distance/gjk.h"
+#include "contact/distance/particle_extent.h"
+#include "contact/distance/particle_vicinity.h"
 #include "tests/support/def_world.h"
 #include "tests/support/material_point.h"
 #include "tests/support/numbers.h"
@@ -68,6 +70,17 @@ static double least_weight(brunt_body *body, form is, int64_t s, const double at
     return least;
 }
 
+// What a node of a slot sees, of a vicinity for it alone.
+static void look(brunt_body *body, int32_t slot, int node, brunt_cloud *cloud) {
+    brunt_vicinity vicinity = {.body = NULL};
+    int local[3];
+    brunt_node_local(&body->grid, node, local);
+    const int nodes[2] = {local[body->grid.dim - 1], local[body->grid.dim - 1]};
+    ck_assert_int_eq(brunt_vicinity_turn(&vicinity, body, slot, nodes, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_vicinity_look(&vicinity, node, cloud, NULL), BRUNT_OK);
+    brunt_vicinity_free(&vicinity);
+}
+
 // Particles that the node feels are in its runs, once each.
 static void check_runs(brunt_body *body, form is, int32_t slot, int node, const double at[3]) {
     static int seen[1 << 16];
@@ -86,15 +99,14 @@ static void check_runs(brunt_body *body, form is, int32_t slot, int node, const 
 
 static void check_gradient(brunt_body *body, form is, const brunt_cloud *cloud, const double at[3]) {
     const double step = 1e-5 * h;
-    double gradient[3], centre[3];
-    brunt_cloud_gradient(cloud, &body->grid, gradient, centre);
+    double gradient[3];
+    brunt_cloud_gradient(cloud, &body->grid, gradient);
     for (int a = 0; a < is.dim; a++) {
         double to[2][3];
         for (int side = 0; side < 2; side++) memcpy(to[side], at, sizeof to[side]), to[side][a] += side ? step : -step;
         const double slope = (fraction(body, is, to[1]) - fraction(body, is, to[0])) / (2 * step);
         // Linear kernels have a kink; no particle is as near to a line of the grid.
         ck_assert_double_eq_tol(gradient[a] * h, slope * h, TOLERANCE(1e-6, 1e-1));
-        ck_assert_double_le(fabs(centre[a]), 2 * h);
     }
     for (int a = is.dim; a < 3; a++) ck_assert_double_eq(gradient[a], 0);
 }
@@ -140,7 +152,7 @@ START_TEST(a_cloud_is_what_the_node_feels) {
         const int node = draw_whole(&state, BRUNT_BLOCK_NODES);
         double at[3];
         brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, at);
-        ck_assert_int_eq(brunt_cloud_gather(body, slot, node, &cloud, NULL), BRUNT_OK);
+        look(body, slot, node, &cloud);
         check_runs(body, is, slot, node, at);
         check_extents(body, &cloud, slot, node, &state);
         if (fabs(fraction(body, is, at)) > 0) check_gradient(body, is, &cloud, at), full++;
@@ -150,6 +162,62 @@ START_TEST(a_cloud_is_what_the_node_feels) {
     brunt_world_destroy(world);
 }
 END_TEST
+
+// Nodes that look one after the other see what each would alone, to the bit, and what number a particle has where the
+// cloud is from leads back to it.
+START_TEST(nodes_of_a_slot_see_what_each_would_alone) {
+    uint64_t state = (uint64_t)_i + 3;
+    brunt_world *world = make_block(forms[_i], &state);
+    brunt_body *body = &world->bodies.mpm[0];
+    brunt_vicinity vicinity = {.body = NULL};
+    brunt_cloud alone = {.count = 0}, cloud = alone;
+    const int nodes[2] = {1, body->grid.side - 2};
+    int seen = 0;
+    for (int32_t slot = 0; slot < body->grid.slot_count; slot++) {
+        ck_assert_int_eq(brunt_vicinity_turn(&vicinity, body, slot, nodes, NULL), BRUNT_OK);
+        for (int k = 0; k < BRUNT_BLOCK_NODES; k++) {
+            const int node = draw_whole(&state, BRUNT_BLOCK_NODES);
+            int local[3];
+            brunt_node_local(&body->grid, node, local);
+            if (local[body->grid.dim - 1] < nodes[0] || local[body->grid.dim - 1] > nodes[1]) continue;
+            look(body, slot, node, &alone);
+            ck_assert_int_eq(brunt_vicinity_look(&vicinity, node, &cloud, NULL), BRUNT_OK);
+            ck_assert_int_eq(cloud.count, alone.count);
+            for (int r = 0; r < BRUNT_ROWS; r++)
+                for (int i = 0; i < cloud.count; i++)
+                    ck_assert_double_eq(cloud.data[(size_t)r * cloud.stride + (size_t)i],
+                                        alone.data[(size_t)r * alone.stride + (size_t)i]);
+            for (int i = 0; i < cloud.count; i++) {
+                const int source = brunt_cloud_source(&cloud, i);
+                ck_assert_int_eq(brunt_cloud_find(&cloud, source), i);
+                ck_assert_double_eq_tol(vicinity.data[source] - cloud.data[i],
+                                        vicinity.data[brunt_cloud_source(&cloud, 0)] - cloud.data[0],
+                                        1e-12); // the node's place
+            }
+            int found = 0;
+            for (int source = 0; source < (int)vicinity.stride; source++)
+                found += brunt_cloud_find(&cloud, source) != BRUNT_NONE;
+            ck_assert_int_eq(found, cloud.count);
+            seen += cloud.count > 0;
+        }
+    }
+    ck_assert_int_gt(seen, 30);
+    brunt_cloud_free(&cloud), brunt_cloud_free(&alone), brunt_vicinity_free(&vicinity);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Known corners to begin with, right or wrong, change nothing but the way.
+static void check_corners(const brunt_cloud cloud[2], double d, uint64_t *state) {
+    brunt_corners corners = {.count = 1 + draw_whole(state, 3)};
+    for (int i = 0; i < corners.count; i++)
+        corners.a[i] = draw_whole(state, POINTS), corners.b[i] = draw_whole(state, POINTS);
+    double n[3];
+    const double start[3] = {1};
+    ck_assert_double_eq_tol(brunt_gjk_centres(&cloud[0], &cloud[1], h, start, n, &corners), d, 1e-7);
+    if (d > 0) ck_assert_int_gt(corners.count, 0);
+    ck_assert_double_eq_tol(brunt_gjk_centres(&cloud[0], &cloud[1], h, start, n, &corners), d, 1e-7);
+}
 
 // What is freed of stress keeps its place: a particle of volume 0 counts with that of its lattice.
 START_TEST(what_is_freed_keeps_its_place) {
@@ -162,12 +230,12 @@ START_TEST(what_is_freed_keeps_its_place) {
             for (int k = 0; k < dim * dim; k++) F[k][s] = k % (dim + 1) == 0;
         real *volume = brunt_field(&body->particles, BRUNT_FIELD_reference_volume)[0];
         brunt_cloud cloud[2] = {{.count = 0}};
-        double gradient[2][3], centre[2][3];
+        double gradient[2][3];
         for (int freed = 0; freed < 2; freed++) {
             body->keeps = freed;
             for (int64_t s = 0; freed && s < body->particles.slots; s++) volume[s] = 0;
-            ck_assert_int_eq(brunt_cloud_gather(body, 0, BRUNT_BLOCK_NODES - 1, &cloud[freed], NULL), BRUNT_OK);
-            brunt_cloud_gradient(&cloud[freed], &body->grid, gradient[freed], centre[freed]);
+            look(body, 0, BRUNT_BLOCK_NODES - 1, &cloud[freed]);
+            brunt_cloud_gradient(&cloud[freed], &body->grid, gradient[freed]);
         }
         ck_assert_int_gt(cloud[0].count, 0);
         for (int a = 0; a < dim; a++)
@@ -182,7 +250,7 @@ END_TEST
 
 // Points in a ball of radius 1 about `at`.
 static void fill(brunt_cloud *cloud, const double at[3], uint64_t *state) {
-    ck_assert_int_eq(brunt_cloud_points(cloud, POINTS, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_cloud_reserve(cloud, POINTS, NULL), BRUNT_OK);
     for (int i = 0; i < POINTS; i++) {
         double x[3], square = 0;
         for (int a = 0; a < 3; a++) x[a] = draw_between(state, -1, 1), square += x[a] * x[a];
@@ -213,10 +281,11 @@ START_TEST(no_direction_parts_two_clouds_more) {
         double at[3], n[3], m[3], start[3];
         for (int a = 0; a < 3; a++) at[a] = draw_between(&state, -2.2, 2.2), start[a] = draw_between(&state, -1, 1);
         fill(&cloud[0], origin, &state), fill(&cloud[1], at, &state);
-        brunt_corners corners;
+        brunt_corners corners = {.count = 0}, turned = corners;
         const double d = brunt_gjk_centres(&cloud[0], &cloud[1], h, at, n, &corners);
-        const double other = brunt_gjk_centres(&cloud[1], &cloud[0], h, start, m, &corners);
+        const double other = brunt_gjk_centres(&cloud[1], &cloud[0], h, start, m, &turned);
         ck_assert_double_eq_tol(d, other, 1e-7);
+        check_corners(cloud, d, &state);
         if (d > 0) {
             ck_assert_double_eq_tol(apart_along(&cloud[0], &cloud[1], false, n), d, 1e-12);
             for (int a = 0; a < 3; a++) ck_assert_double_eq_tol(n[a], -m[a], 1e-3);
@@ -245,7 +314,7 @@ static void gather_face(brunt_body *body, double face, uint64_t *state, brunt_cl
         double at[3];
         brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, at);
         if (fabs(at[0] - face) > 0.7 * h) continue;
-        ck_assert_int_eq(brunt_cloud_gather(body, slot, node, cloud, NULL), BRUNT_OK);
+        look(body, slot, node, cloud);
         if (cloud->count > 4) return;
     }
 }
@@ -293,7 +362,7 @@ START_TEST(ellipsoids_are_as_far_apart_as_any_direction_says) {
         gather_face(block, 0.63, &state, &cloud[0]), gather_face(other, 2, &state, &cloud[1]);
         const double by = draw_between(&state, -0.1, 0.1) * h - apart_along(&cloud[0], &cloud[1], true, start);
         for (int i = 0; i < cloud[1].count; i++) cloud[1].data[i] += by; // the first row: x
-        brunt_corners corners, turned;
+        brunt_corners corners = {.count = 0}, turned = corners;
         ck_assert(brunt_gjk_centres(&cloud[0], &cloud[1], h, start, n, &corners) > 0);
         ck_assert(brunt_gjk_centres(&cloud[1], &cloud[0], h, back, m, &turned) > 0);
         const double d = brunt_gjk_reaches(&cloud[0], &cloud[1], h, n, n, &corners),
@@ -317,6 +386,7 @@ int main(void) {
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 120);
     tcase_add_loop_test(all, a_cloud_is_what_the_node_feels, 0, BRUNT_COUNT(forms));
+    tcase_add_loop_test(all, nodes_of_a_slot_see_what_each_would_alone, 0, BRUNT_COUNT(forms));
     tcase_add_test(all, what_is_freed_keeps_its_place);
     tcase_add_test(all, no_direction_parts_two_clouds_more);
     tcase_add_loop_test(all, ellipsoids_are_as_far_apart_as_any_direction_says, 0, 2);
