@@ -125,6 +125,10 @@ double brunt_barrier_bound(const brunt_barrier *barrier);
 // Friction is that of the normal forces and directions at u, wherever it is asked for: it has no potential then, only
 // forces, whose derivative is not symmetric. Until it is told to go by the last lag again.
 void brunt_barrier_follow(brunt_barrier *barrier, bool live);
+// The same, but with a potential: surfaces that slip come apart by the coefficient times the slip, and are given back
+// what it is at `from` [m, of all unknowns, which stays where it is]. Where they slip as there, its force is that of
+// `follow`. NULL: until here.
+void brunt_barrier_associate(brunt_barrier *barrier, const double *from);
 // Load steps: from now on friction keeps, from step to step, how far surfaces have given along each other; of vertices
 // of meshes at bodies and planes, as the mesh is now. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_barrier_keep_slips(brunt_barrier *barrier, brunt_error *error);

@@ -163,8 +163,9 @@ struct brunt_barrier {
     barrier_rub *rub;   // of `lagged`
     barrier_kept *kept; // BARRIER_KEPT of each vertex, where load steps keep slips
     bool keeps;
-    bool live;  // friction follows normal forces and directions as they are, not as they were at the last lag
-    bool tries; // and what it is at a place that is tried is asked for
+    bool live;          // friction follows normal forces and directions as they are, not as they were at the last lag
+    bool tries;         // and what it is at a place that is tried is asked for
+    const double *from; // meanwhile, where it has a potential: where the round began (barrier_cone.c)
     barrier_felt *felt, *felt_before; // meanwhile: of `lagged` where that was looked at last, and room
     int64_t felt_count;
     size_t rub_capacity, kept_capacity, felt_capacity, felt_before_capacity;
@@ -250,6 +251,17 @@ bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c
 // --- friction of one contact (barrier_slip.c)
 // How far the features slip along each other by block vector u [m].
 void barrier_slip_of(const brunt_barrier *b, const barrier_contact *c, const double *u, double slip[3]);
+// What the law says of a slip: part r(|y|) y of the greatest force.
+typedef struct barrier_slip {
+    double y[3], size; // [m] dt times the velocity of the slip, and its length
+    double ratio;      // [1/m] r
+    double bend;       // slope of 1 / r by |y|
+    double potential;  // f0 [m]
+} barrier_slip;
+barrier_slip barrier_slip_at(const brunt_barrier *b, const barrier_contact *c, const double *u);
+double barrier_slip_rate(const brunt_barrier *b, const barrier_contact *c); // how the slip that counts follows u
+// [m] How far the features have come to each other in the step, along where they push now.
+double barrier_approach(const brunt_barrier *b, const barrier_contact *c, const double *u);
 double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, const double *u);
 // [N] on the first feature; the other gets the opposite.
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]);
@@ -265,6 +277,13 @@ void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, cons
 // `part`: that of the greatest force, as of `barrier_slip_hessian`.
 void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
                           double *tangent);
+
+// --- its potential where surfaces that slip come apart (barrier_cone.c), less that of the barrier alone
+double barrier_cone_energy(const brunt_barrier *b, const barrier_contact *c, const double *u);
+void barrier_cone_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient);
+// With that of the barrier alone it is positive. `part`: that of the greatest force, as of `barrier_slip_hessian`.
+void barrier_cone_hessian(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
+                          double *hessian);
 
 // --- from load step to load step (barrier_memory.c)
 // How far the surfaces of a contact had given before the step [m]; 0: nothing is kept.

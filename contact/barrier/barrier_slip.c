@@ -14,19 +14,11 @@ void barrier_slip_of(const brunt_barrier *b, const barrier_contact *c, const dou
     for (int k = 0; k < 3; k++) slip[k] -= along * c->at.n[k];
 }
 
-// What the law says of a slip: part r(|y|) y of the greatest force.
-typedef struct slip_law {
-    double y[3], size; // [m] dt times the velocity of the slip, and its length
-    double ratio;      // [1/m] r
-    double bend;       // slope of 1 / r by |y|
-    double potential;  // f0 [m]
-} slip_law;
-
 // f1 = 2 y/e - y^2/e^2 below e = dt eps_v, then 1; where it sticks 2 y/e without end.
-static slip_law law_at(const brunt_barrier *b, const barrier_contact *c, const double y[3]) {
+static barrier_slip law_at(const brunt_barrier *b, const barrier_contact *c, const double y[3]) {
     const barrier_law law = barrier_law_of(b, c->law);
     const double e = b->step.dt * law.slip_speed, size = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
-    slip_law s = {.y = {y[0], y[1], y[2]}, .size = size};
+    barrier_slip s = {.y = {y[0], y[1], y[2]}, .size = size};
     if (law.friction == INFINITY) {
         s.ratio = 2 / e, s.potential = size * size / e;
     } else if (size < e) {
@@ -38,7 +30,7 @@ static slip_law law_at(const brunt_barrier *b, const barrier_contact *c, const d
     return s;
 }
 
-static slip_law slip_at(const brunt_barrier *b, const barrier_contact *c, const double *u) {
+barrier_slip barrier_slip_at(const brunt_barrier *b, const barrier_contact *c, const double *u) {
     const brunt_barrier_step *step = &b->step;
     double y[3], before[3] = {0};
     barrier_slip_of(b, c, u, y);
@@ -51,8 +43,7 @@ static slip_law slip_at(const brunt_barrier *b, const barrier_contact *c, const 
     return law_at(b, c, y);
 }
 
-// How the slip that counts follows u.
-static double slip_rate(const brunt_barrier *b, const barrier_contact *c) {
+double barrier_slip_rate(const brunt_barrier *b, const barrier_contact *c) {
     return b->step.factor * (b->keeps ? b->rub[c - b->lagged.contact].share : 1);
 }
 
@@ -63,11 +54,11 @@ static double greatest_force(const brunt_barrier *b, const barrier_contact *c) {
 }
 
 double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, const double *u) {
-    return greatest_force(b, c) * slip_at(b, c, u).potential / slip_rate(b, c);
+    return greatest_force(b, c) * barrier_slip_at(b, c, u).potential / barrier_slip_rate(b, c);
 }
 
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]) {
-    const slip_law s = slip_at(b, c, u);
+    const barrier_slip s = barrier_slip_at(b, c, u);
     const double greatest = greatest_force(b, c), scale = greatest * s.ratio;
     const double *part = b->live ? b->rub[c - b->lagged.contact].part : NULL;
     for (int k = 0; k < 3; k++) force[k] = part ? -greatest * part[k] : -scale * s.y[k];
@@ -90,8 +81,7 @@ void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, con
 // Put into the balance of forces that gives the gradient as it is, and for the Hessian r (1 - (1/r)' w y^T / |y|),
 // which is positive as long as |w| <= 1, and which is the true one where w = r y. Its symmetric part is taken.
 
-// [m] How far the features have come to each other in the step, along where they push now.
-static double approach_of(const brunt_barrier *b, const barrier_contact *c, const double *u) {
+double barrier_approach(const brunt_barrier *b, const barrier_contact *c, const double *u) {
     double apart = 0;
     for (int i = 0; i < c->at.places; i++) {
         double move[3];
@@ -104,7 +94,7 @@ static double approach_of(const brunt_barrier *b, const barrier_contact *c, cons
 // Surfaces that meet within a load step rub from where their gap came below the distance, on a straight way.
 static double share_of(const brunt_barrier *b, const barrier_contact *c, const double *u) {
     const double within = barrier_law_of(b, c->law).distance - (c->at.d - c->offset);
-    const double approach = b->keeps ? approach_of(b, c, u) : 0;
+    const double approach = b->keeps ? barrier_approach(b, c, u) : 0;
     return approach > within ? within / approach : 1;
 }
 
@@ -112,12 +102,12 @@ void barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const 
     *rub = (barrier_rub){.energy = 0};
     barrier_kept_slip(b, c, rub->kept);
     rub->share = share_of(b, c, u);
-    const slip_law s = slip_at(b, c, u);
+    const barrier_slip s = barrier_slip_at(b, c, u);
     for (int k = 0; k < 3; k++) rub->slip[k] = s.y[k], rub->part[k] = s.ratio * s.y[k];
 }
 
 void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub) {
-    const slip_law now = slip_at(b, c, u), old = law_at(b, c, rub->slip);
+    const barrier_slip now = barrier_slip_at(b, c, u), old = law_at(b, c, rub->slip);
     double along = 0, square = 0;
     for (int k = 0; k < 3; k++) along += old.y[k] * (now.y[k] - old.y[k]);
     if (old.size > 0) along *= old.bend / old.size;
@@ -137,11 +127,11 @@ void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const
 void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
                           double *tangent) {
     const int dim = b->dim, places = c->at.places, rows = places * dim;
-    const slip_law s = slip_at(b, c, u);
+    const barrier_slip s = barrier_slip_at(b, c, u);
     const double *n = c->at.n, greatest = greatest_force(b, c), slope = barrier_contact_force_slope(b, c),
                  mu = c->normal_force > 0 ? greatest / c->normal_force : 0;
     double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], slip[3];
-    const double apart = -approach_of(b, c, u), share = share_of(b, c, u);
+    const double apart = -barrier_approach(b, c, u), share = share_of(b, c, u);
     brunt_closest_hessian(&c->at, dim, 0, 1, turn);
     for (int i = 0; i < places; i++) barrier_move(b, c->place[i], u, move[i]);
     barrier_slip_of(b, c, u, slip);
@@ -176,8 +166,9 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
 
 void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
                           double *h) {
-    const slip_law s = slip_at(b, c, u);
-    const double scale = slip_rate(b, c) * greatest_force(b, c) * s.ratio, bend = s.size > 0 ? s.bend / s.size / 2 : 0;
+    const barrier_slip s = barrier_slip_at(b, c, u);
+    const double scale = barrier_slip_rate(b, c) * greatest_force(b, c) * s.ratio,
+                 bend = s.size > 0 ? s.bend / s.size / 2 : 0;
     const int rows = c->at.places * b->dim;
     for (int i = 0; i < c->at.places; i++)
         for (int j = 0; j < c->at.places; j++)

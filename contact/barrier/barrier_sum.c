@@ -77,7 +77,9 @@ static void fill_contact(void *context, int64_t s, double *dense, int worker) {
         const double *weight;
         total += barrier_nodes(w->b, c->place[i], &node, &weight);
     }
-    if (w->friction && w->b->live)
+    if (w->friction && w->b->from)
+        barrier_cone_hessian(w->b, c, w->b->felt[s].part, w->u, local);
+    else if (w->friction && w->b->live)
         barrier_slip_tangent(w->b, c, w->b->felt[s].part, w->u, local);
     else if (w->friction)
         barrier_slip_hessian(w->b, c, &w->b->rub[s], w->u, local);

@@ -61,7 +61,9 @@ static void take_forces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     for (int64_t i = begin; i < end; i++) {
         const barrier_contact *c = &w->list->contact[w->first + i];
-        if (w->friction)
+        if (w->friction && w->b->from)
+            barrier_cone_gradient(w->b, c, w->u, w->local[i]);
+        else if (w->friction)
             barrier_slip_gradient(w->b, c, w->u, w->local[i]);
         else
             barrier_contact_gradient(w->b, c, w->local[i]);
@@ -155,7 +157,14 @@ double brunt_barrier_bound(const brunt_barrier *b) {
 
 // ------------------------------------------------------------------------------ friction that follows what presses
 
-void brunt_barrier_follow(brunt_barrier *b, bool live) { b->live = live, b->tries = false, b->felt_count = 0; }
+void brunt_barrier_follow(brunt_barrier *b, bool live) {
+    b->live = live, b->from = NULL, b->tries = false, b->felt_count = 0;
+}
+
+void brunt_barrier_associate(brunt_barrier *b, const double *from) {
+    brunt_barrier_follow(b, from);
+    b->from = from;
+}
 
 static bool felt_of(const barrier_felt *f, const barrier_contact *c) {
     return f->law == c->law && f->edges == (c->threshold > 0) && !memcmp(f->place, c->place, sizeof f->place);
@@ -206,7 +215,7 @@ static int keep_felt(brunt_barrier *b, const double *u, brunt_error *error) {
 static void friction_try(void *self, double share) {
     brunt_barrier *b = self;
     (void)share;
-    b->tries = b->live;
+    b->tries = b->live && !b->from;
 }
 
 // ------------------------------------------------------------------------------------------------ its term
@@ -234,17 +243,19 @@ static int friction_look(void *self, const brunt_team *team, const double *u, co
 static void take_slip_energies(void *context, int64_t begin, int64_t end, int worker) {
     const slip_work *w = context;
     (void)worker;
+    brunt_barrier *b = w->b;
     for (int64_t i = begin; i < end; i++)
-        w->b->rub[i].energy = barrier_slip_energy(w->b, &w->b->lagged.contact[i], w->u);
+        b->rub[i].energy = (b->from ? barrier_cone_energy : barrier_slip_energy)(b, &b->lagged.contact[i], w->u);
 }
 
 static brunt_energy_sum friction_energy(void *self, const brunt_team *team, const double *u) {
     brunt_barrier *b = self;
     brunt_energy_sum sum = {0};
     slip_work work = {b, u};
+    if (b->live && list_rubbing(b, team, u, &b->unsaid)) return sum;
     brunt_parallel(team->threads, b->lagged.count, BARRIER_GRAIN, take_slip_energies, &work, team->timer);
-    for (int64_t i = 0; i < b->lagged.count; i++) sum.value += b->rub[i].energy;
-    sum.magnitude = sum.value;
+    for (int64_t i = 0; i < b->lagged.count; i++)
+        sum.value += b->rub[i].energy, sum.magnitude += fabs(b->rub[i].energy);
     return sum;
 }
 

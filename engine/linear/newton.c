@@ -16,9 +16,12 @@ enum { HALVINGS = 60, FEW_HALVINGS = 12, MEMORY = 3 };
 #define LEAST_SHIFT 1e-13
 #define MORE_SHIFT 100.0
 #define SHIFT_LIMIT 1e-2
-#define SPARE 1e-14 // of the diagonal, that a matrix may miss by rounding to be positive definite
-#define STUCK 0.5   // of the length two iterations ago
-#define EARLY 0.1   // of the tolerance, that the next step would be; of the last step, that this one is
+#define SOFTEST 1e-9 // of the diagonal: where bodies as wholes give way, they do so by about as much
+#define SOFT 2e-5    // or by no more
+#define CLOSELY 1e-2 // of the forces that act, to balance
+#define SPARE 1e-14  // of the diagonal, that a matrix may miss by rounding to be positive definite
+#define STUCK 0.5    // of the length two iterations ago
+#define EARLY 0.1    // of the tolerance, that the next step would be; of the last step, that this one is
 
 typedef struct newton_run {
     brunt_newton *n;
@@ -305,24 +308,28 @@ static brunt_linear_status try_matrix(newton_run *r) {
     return BRUNT_LINEAR_INDEFINITE;
 }
 
-// The matrix as it is; then projected; then its diagonal raised, ever more.
+// The matrix as it is; projected; then its diagonal raised, ever more. Where forces nearly balance, and what is
+// unstable is that bodies roll off each other, a projected matrix is too stiff for that by orders of magnitude, and
+// they stay: the diagonal is raised by little first.
 static int find_step(newton_run *r) {
+    bool projected = !(r->options->unbalance && r->report->unbalance < CLOSELY);
     phase(r, BRUNT_NEWTON_MATRIX);
     if (make_pattern(r)) return BRUNT_FAILED;
     double shift = 0;
     for (int attempt = 0;; attempt++) {
         if (attempt > 0) phase(r, BRUNT_NEWTON_MATRIX);
         r->plain = attempt == 0;
-        if (attempt <= 1) {
-            if (fill_matrix(r, !r->plain, attempt > 0)) return BRUNT_FAILED;
+        const double next = shift > 0 ? MORE_SHIFT * shift : projected ? LEAST_SHIFT : SOFTEST;
+        const bool project = (projected && attempt == 1) || (!projected && next > SOFT);
+        if (attempt == 0 || project) {
+            if (fill_matrix(r, project, attempt > 0)) return BRUNT_FAILED;
             hold_matrix(r);
-        }
-        if (attempt == 1) r->report->projections++;
-        if (attempt > 1) {
-            const double next = shift > 0 ? MORE_SHIFT * shift : LEAST_SHIFT;
+            shift = 0;
+        } else {
             raise_matrix(r, shift, next);
             shift = next, r->report->shifts++;
         }
+        if (project) r->report->projections++, projected = true;
         const brunt_linear_status status = try_matrix(r);
         if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
         if (status != BRUNT_LINEAR_INDEFINITE)

@@ -32,21 +32,21 @@ typedef struct brunt_weights {
 
 // Arrays over all components of the unknowns.
 typedef struct brunt_fields {
-    double *u, *v;        // [m] displacement, [m/s] velocity at the end
-    double *aim;          // [m]
-    double *acceleration; // [m/s^2] at the start; 0 of backward Euler
-    double *load;         // [N] at the end of the step
-    double *force_before; // [N] all forces at its start; of Newmark and of load steps
-    double *gradient;     // [N] of all that is stored, at the end once the step is recorded
-    double *contact;      // [N] of barriers and friction, as the integrator weighs both ends of the step
-    double *step, *zero;  // room; 0
-    double *pull;         // [N/m] of components on their way to where they are to be, while they are
-    double *stiffness;    // [N/m] of nodes, m (c / h)^2; of load steps
-    double *rub, *tried;  // [m] where friction was taken last, and room; of load steps with friction
-    uint8_t *support;     // of nodes: brunt_support of their body; of load steps
+    double *u, *v;              // [m] displacement, [m/s] velocity at the end
+    double *aim;                // [m]
+    double *acceleration;       // [m/s^2] at the start; 0 of backward Euler
+    double *load;               // [N] at the end of the step
+    double *force_before;       // [N] all forces at its start; of Newmark and of load steps
+    double *gradient;           // [N] of all that is stored, at the end once the step is recorded
+    double *contact;            // [N] of barriers and friction, as the integrator weighs both ends of the step
+    double *step, *zero;        // room; 0
+    double *pull;               // [N/m] of components on their way to where they are to be, while they are
+    double *stiffness;          // [N/m] of nodes, m (c / h)^2; of load steps
+    double *rub, *tried, *best; // [m] where friction was taken last, room, and where it was best; of load steps with it
+    uint8_t *support;           // of nodes: brunt_support of their body; of load steps
     size_t u_capacity, v_capacity, aim_capacity, acceleration_capacity, load_capacity, force_before_capacity,
         gradient_capacity, contact_capacity, step_capacity, zero_capacity, pull_capacity, stiffness_capacity,
-        support_capacity, rub_capacity, tried_capacity;
+        support_capacity, rub_capacity, tried_capacity, best_capacity;
 } brunt_fields;
 
 struct brunt_implicit {

@@ -241,7 +241,7 @@ void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies) {
     brunt_fields *f = &m->field;
     double *const fields[] = {f->u,         f->v,           f->aim,       f->acceleration, f->load,  f->force_before,
                               f->gradient,  f->contact,     f->step,      f->zero,         m->moved, f->pull,
-                              f->stiffness, m->drag_weight, m->drag_rest, f->rub,          f->tried};
+                              f->stiffness, m->drag_weight, m->drag_rest, f->rub,          f->tried, f->best};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
     brunt_free(f->support);
     brunt_newton_free(&m->newton);
@@ -315,7 +315,7 @@ size_t brunt_implicit_bytes(const brunt_world *world) {
     for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);
     return bytes + f->u_capacity + f->v_capacity + f->aim_capacity + f->acceleration_capacity + f->load_capacity +
            f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity + f->pull_capacity +
-           f->stiffness_capacity + f->support_capacity + f->rub_capacity + f->tried_capacity;
+           f->stiffness_capacity + f->support_capacity + f->rub_capacity + f->tried_capacity + f->best_capacity;
 }
 
 size_t brunt_implicit_matrix_bytes(const brunt_plan *plan) {

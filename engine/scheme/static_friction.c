@@ -1,20 +1,18 @@
 // Friction of load steps: Coulomb's law with what presses at the end of the step.
 //
-// With given normal forces friction has a potential (Coulomb's law becomes Tresca's), which Newton's method minimises
-// with all else, however far it is; then they are taken anew where that has led, and so on. From round to round the
-// normal forces come nearer to their own by a part alone, 0.7 to 0.9 of what is left with a coefficient of 0.5 between
-// disks, and where they push each other to and fro, more at a time, they never do: in round after round they go past
-// what they should be. Two things are done about it:
+// Rounds: in each, friction has a potential in which surfaces that slip come apart, and are given back what they came
+// apart by where the round began (barrier_cone.c). Newton's method minimises it with all else, however far that is, for
+// a few iterations, or as well as there is use for; the next round begins there. From round to round the slips change
+// by less, by .1 to .9 of what they did, and forces are Coulomb's where they change no more. With given normal forces
+// (Tresca's law) that goes on without end where disks push each other to and fro.
 //
-// - where a round has not come nearer, friction is taken halfway, or a quarter of the way, to where it led
-// - once forces with what presses there are nearly balanced, friction follows what presses: Newton's method with the
-//   whole derivative, which is not symmetric, in 2 to 12 steps: what slips is found with forces that are unknowns of
-//   their own (barrier_slip.c). Where that does not get there, as where corners of surfaces slide onto each other and
-//   no equilibrium is near, rounds go on from where less is left
+// Once forces are nearly balanced, and Newton's method goes straight, friction follows what presses: Newton's method
+// with the whole derivative, which is not symmetric, in 2 to 12 steps: what slips is found with forces that are
+// unknowns of their own (barrier_slip.c). Where that does not get there, as where corners of surfaces slide onto each
+// other and no equilibrium is near, rounds go on from where less is left.
 //
 // What is not balanced with friction taken where bodies are is no equilibrium, however well each potential is
-// minimised: a body that slides away, say. It is in vain to minimise the first ones well, while bodies that only
-// friction holds have none.
+// minimised: a body that slides away, say.
 #include <math.h>
 #include <string.h>
 
@@ -22,38 +20,57 @@
 #include "base/error.h"
 #include "scheme/implicit.h"
 
-static const double NEAR = 0.5, NEARER = 0.5;          // of the forces that act; of what was left when it was in vain
-static const double LEAST_SHARE = 0.25, NO_LESS = 0.9; // of the way; of what was left before
-enum { AT_ONCE = 4, LONG = 12 };                       // iterations
+// Of the forces that act; of what was left when it was in vain; of what is left, in a round.
+static const double NEAR = 0.5, NEARER = 0.5, ENOUGH = 0.03, NO_LESS = 0.9;
+enum { AT_ONCE = 3, LONG = 12 }; // iterations
+enum { VAIN = 4 };               // rounds
 
 typedef struct rubbing {
     struct brunt_implicit *m;
     brunt_minimise *minimise;
     brunt_newton_report *report;
-    int32_t left;       // iterations
-    double share;       // of the way from where friction was taken last at which it is taken
-    double off, before; // what is unbalanced with friction as it is at u, and was after the round before
-    double near;        // below it friction is let follow
+    int32_t left; // iterations
+    double off;   // what is unbalanced with friction as it is at u; INFINITY: not known
+    double near;  // below it friction is let follow
+    double best;  // of off after all rounds, where bodies were at field.best
+    double least; // since rounds became of this kind
+    int in_vain;  // rounds since that was lessened
+    bool lags;    // what presses is given in rounds
 } rubbing;
 
-// Takes friction anew.
-static int take(rubbing *r, brunt_error *error) {
-    brunt_fields *f = &r->m->field;
-    const int64_t all = brunt_implicit_components(r->m);
-    for (int64_t k = 0; k < all; k++) f->rub[k] += r->share < 1 ? r->share * (f->u[k] - f->rub[k]) : 0;
-    if (r->share == 1) memcpy(f->rub, f->u, (size_t)all * sizeof *f->u);
-    return brunt_barrier_lag(r->m->contact.barrier, &r->m->team, f->rub, error);
-}
-
-// Minimises with friction as it was taken, for as many iterations.
-static int minimise_some(rubbing *r, int32_t most, brunt_error *error) {
+// Minimises for as many iterations, or until what is unbalanced is below the tolerance.
+static int minimise_some(rubbing *r, int32_t most, double tolerance, brunt_error *error) {
     const brunt_newton_options asked = r->m->options;
-    r->m->options.stable = false;
+    r->m->options.stable = false, r->m->options.tolerance = tolerance;
     r->m->options.iterations = r->left > most ? most : r->left > 0 ? r->left : 1; // at last it is only looked at
     const int status = r->minimise(r->m, r->report, error);
     r->m->options = asked;
     r->left -= r->report->iterations;
     return status;
+}
+
+// A round from where bodies are.
+static int round_from(rubbing *r, brunt_error *error) {
+    brunt_fields *f = &r->m->field;
+    const double enough = r->off < INFINITY ? ENOUGH * r->off : 0;
+    memcpy(f->rub, f->u, (size_t)brunt_implicit_components(r->m) * sizeof *f->u);
+    r->report->result = BRUNT_NEWTON_BROKEN;
+    if (r->lags && brunt_barrier_lag(r->m->contact.barrier, &r->m->team, f->u, error)) return BRUNT_FAILED;
+    if (!r->lags) brunt_barrier_associate(r->m->contact.barrier, f->rub);
+    const int status = minimise_some(r, r->lags ? LONG : AT_ONCE, fmax(r->m->options.tolerance, enough), error);
+    brunt_barrier_associate(r->m->contact.barrier, NULL);
+    return status;
+}
+
+// Rounds of the other kind where these have not led anywhere. Where least is left is kept.
+static void turn(rubbing *r) {
+    const brunt_fields *f = &r->m->field;
+    if (r->off < r->best) memcpy(f->best, f->u, (size_t)brunt_implicit_components(r->m) * sizeof *f->u);
+    r->best = fmin(r->best, r->off);
+    r->in_vain = r->off < NO_LESS * r->least ? 0 : r->in_vain + 1;
+    r->least = fmin(r->least, r->off);
+    if (r->in_vain < VAIN) return;
+    r->lags = !r->lags, r->in_vain = 0, r->least = INFINITY;
 }
 
 // What is left of forces with friction as it is at u.
@@ -67,7 +84,6 @@ static int measure(rubbing *r, brunt_error *error) {
     if (!status) brunt_implicit_gradient(m, 0, m->term_count, m->field.u, m->field.step);
     brunt_barrier_follow(m->contact.barrier, false);
     if (fold) brunt_fold_gather(fold, m->unknowns.dim, m->field.step);
-    r->before = r->off;
     if (!status) r->off = brunt_static_unbalance(m, m->field.step);
     return status;
 }
@@ -79,14 +95,19 @@ static int follow(rubbing *r, brunt_error *error) {
     const bool forces = m->forces;
     m->options.solver = &brunt_linear_unsymmetric, m->options.fallback = false, m->forces = true;
     brunt_barrier_follow(m->contact.barrier, true);
-    const int status = minimise_some(r, LONG, error);
+    const int status = minimise_some(r, LONG, asked.tolerance, error);
     brunt_barrier_follow(m->contact.barrier, false);
     m->options = asked, m->forces = forces;
     return status;
 }
 
-// Whether that has led to an equilibrium, and a stable one, which forces alone do not tell. In vain: u is where less is
-// left, there or before.
+// Whether where bodies are is a stable equilibrium, which forces alone do not tell.
+static bool rests(rubbing *r, brunt_error *error) {
+    struct brunt_implicit *m = r->m;
+    return !brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error) && !r->minimise(m, r->report, error);
+}
+
+// Whether friction that follows has led to one. In vain: u is where less is left, there or before.
 static bool follows(rubbing *r) {
     struct brunt_implicit *m = r->m;
     const size_t bytes = (size_t)brunt_implicit_components(m) * sizeof(double);
@@ -94,44 +115,52 @@ static bool follows(rubbing *r) {
     memcpy(m->field.tried, m->field.u, bytes);
     const bool balanced = follow(r, &vain) == BRUNT_OK;
     const bool less = r->report->result != BRUNT_NEWTON_BROKEN && r->report->unbalance < r->off;
-    r->share = 1;
-    if (balanced && !take(r, &vain) && !r->minimise(m, r->report, &vain)) return true;
-    r->near = NEARER * r->off;
+    if (balanced && rests(r, &vain)) return true;
     if (balanced || !less) memcpy(m->field.u, m->field.tried, bytes);
+    r->near = NEARER * r->off, r->off = INFINITY;
     return false;
 }
 
 static int reserve(struct brunt_implicit *m, brunt_error *error) {
     const size_t n = (size_t)brunt_implicit_components(m) + 1;
     return BRUNT_CAPACITY(m->field.rub, n, 0, "unknowns", error) ||
-           BRUNT_CAPACITY(m->field.tried, n, 0, "unknowns", error);
+           BRUNT_CAPACITY(m->field.tried, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(m->field.best, n, 0, "unknowns", error);
 }
 
 int brunt_static_rub(struct brunt_implicit *m, brunt_minimise *minimise, brunt_newton_report *report,
                      brunt_error *error) {
-    rubbing r = {
-        .m = m, .minimise = minimise, .report = report, .left = m->options.iterations, .share = 1, .near = NEAR};
+    rubbing r = {.m = m,
+                 .minimise = minimise,
+                 .report = report,
+                 .left = m->options.iterations,
+                 .off = INFINITY,
+                 .near = NEAR,
+                 .best = INFINITY,
+                 .least = INFINITY};
     const bool direct = m->options.solver != &brunt_linear_pcg || m->options.fallback;
     if (reserve(m, error)) return BRUNT_FAILED;
-    for (int round = 0; r.left >= 0; round++) {
-        const double share = r.share;
-        brunt_error tried = {.id = -1};
-        if (take(&r, error)) return BRUNT_FAILED;
-        const int status = minimise_some(&r, round < 2 ? AT_ONCE : LONG, &tried);
-        if (status && report->result != BRUNT_NEWTON_ITERATIONS) {
+    brunt_error tried;
+    while (r.left > 0) {
+        tried = (brunt_error){.id = -1};
+        const bool taken = !round_from(&r, &tried) || report->result == BRUNT_NEWTON_ITERATIONS;
+        // Where a round has led the slope of its potential is no longer that of its energy to the last digit.
+        if (!taken && !(report->result == BRUNT_NEWTON_UPHILL && report->iterations > 0)) {
             if (error) *error = tried;
             return BRUNT_FAILED;
         }
-        // Forces balance where friction has just been taken: nothing is left to do but to ask whether it is stable.
-        if (!status && report->iterations == 0 && share == 1) return minimise(m, report, error);
+        const bool straight = report->projections == 0;
         if (measure(&r, error)) return BRUNT_FAILED;
-        r.share = round < 2 || r.off < NO_LESS * r.before ? 1 : fmax(LEAST_SHARE, 0.5 * share);
-        if (!status && report->iterations == 0) r.share = 1;
-        if (direct && r.left > 0 && r.off < r.near && follows(&r)) return BRUNT_OK;
+        turn(&r);
+        if (r.off <= m->options.tolerance) return rests(&r, error) ? BRUNT_OK : BRUNT_FAILED;
+        if (direct && straight && r.left > 0 && r.off < r.near && follows(&r)) return BRUNT_OK;
     }
+    // What is said of it is said of where least was left.
+    if (r.best < INFINITY) memcpy(m->field.u, m->field.best, (size_t)brunt_implicit_components(m) * sizeof *m->field.u);
+    r.lags = true, round_from(&r, &tried);
     report->result = BRUNT_NEWTON_ITERATIONS;
     return brunt_fail(error, BRUNT_FAILED,
                       "friction does not settle within %d iterations (newton.iterations): %.3g of the forces that act "
                       "are left.",
-                      m->options.iterations, r.off);
+                      m->options.iterations, r.best);
 }

@@ -10,9 +10,7 @@
 #include "scheme/implicit.h"
 
 // Of the stiffness, beside which bodies stay near where they are: that nothing holds, and that contact alone holds.
-static const double UNSUPPORTED = 1e-5, BORNE = 3e-7, LEAST = 1e-10;
-// Most are where they come to rest in fewer iterations; where that leads nowhere, they are kept nearer for some.
-enum { FREELY = 35, NEARER = 25 };
+static const double UNSUPPORTED = 1e-5, BORNE = 1e-7, LEAST = 1e-10;
 
 // ------------------------------------------------------------------------------------------ parts of load steps
 
@@ -112,9 +110,8 @@ double brunt_static_unbalance(void *context, const double *gradient) {
     // ripples is no matter.
     const bool done = counts <= m->options.tolerance;
     const double less = done ? 1 : sqrt(fmin(share, 1));
-    const double borne = m->scale.asked++ % (FREELY + NEARER) < FREELY ? BORNE : UNSUPPORTED;
     m->proximal.share[BRUNT_UNSUPPORTED] = fmax(LEAST, UNSUPPORTED * less);
-    m->proximal.share[BRUNT_BORNE] = fmax(LEAST, (done ? UNSUPPORTED : borne) * less);
+    m->proximal.share[BRUNT_BORNE] = fmax(LEAST, (done ? UNSUPPORTED : BORNE) * less);
     return counts;
 }
 

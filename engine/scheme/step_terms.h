@@ -30,7 +30,6 @@ typedef struct brunt_load_scale {
     double rounding; // [N] that rounding of places makes
     double left;     // [N] at the last place: 0 at first
     int stalled;     // iterations in a row that have lessened it by next to nothing
-    int asked;       // places that were looked at
 } brunt_load_scale;
 
 // -sum f . u.

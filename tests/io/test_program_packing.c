@@ -125,7 +125,7 @@ START_TEST(what_slides_apart_is_told) {
             "contact.friction=%g",
             mu[k]);
         small_expect(words, 70, "The greatest force left is");
-        ck_assert_int_eq(small_shell("grep -Eq \"body '(right|grains.[1-8])' at\" output"), 0);
+        ck_assert_int_eq(small_shell("grep -Eq \"body '(top|right|grains.[1-8])' at\" output"), 0);
     }
 }
 END_TEST
@@ -141,9 +141,11 @@ START_TEST(hard_packings_settle_or_say_why) {
                  "[1 s, 0.2]]'",
                  0, NULL);
     // Ten times the load is more than a square lattice stands: it turns over, and that is said, and which disk does.
-    small_expect("run square.yaml -t 1 -q -o out --set 'boundaries[2].traction=[0, -29910.269 Pa]' --set "
-                 "'boundaries[3].traction=[-29910.269 Pa, 0]'",
-                 70, "is unstable");
+    // (In load steps of a 64th some sticks anew in each, and it is come past.)
+    small_expect(
+        "run square.yaml -t 1 -q -o out --set newton.cut=3 --set 'boundaries[2].traction=[0, -29910.269 Pa]' --set "
+        "'boundaries[3].traction=[-29910.269 Pa, 0]'",
+        70, "is unstable");
     // Either of two that are each other's mirror image, as rounding has it.
     ck_assert_int_eq(small_shell("grep -Eq \"body 'grains\\.(3' at \\(0\\.024[0-9]*, [0-9.e-]*|7' at \\([0-9.e-]*, "
                                  "0\\.024[0-9]*), 0\\) m\" output"),
@@ -280,7 +282,8 @@ START_TEST(condensed_crowds_are_as_whole_ones) {
     for (int k = 0; k < 2; k++) {
         snprintf(words, sizeof words,
                  "run square.yaml -t 1 -q -o %s --set newton.tolerance=1e-10 --set newton.solver=%s --set "
-                 "'bodies.grains.random={E: {normal: [2.75 MPa, 0.5 MPa], between: [0.5 MPa, 5 MPa]}, seed: 3}'",
+                 "bodies.top.size=30mm --set bodies.right.size=30mm --set 'bodies.grains.random={E: {normal: [2.75 "
+                 "MPa, 0.5 MPa], between: [0.5 MPa, 5 MPa]}, seed: 3}'",
                  k ? "whole" : "condensed", k ? "pcg" : "direct");
         small_expect(words, 0, NULL);
     }
@@ -348,7 +351,8 @@ START_TEST(pyramid_of_six_stands_above_its_friction_alone) {
         read_column("pyramid", "contact.floor-left.force_x", y);
         ck_assert_double_eq_tol(y[last], x[last], 1e-6 * x[last]);
     } else {
-        ck_assert_int_eq(small_shell("grep -Eq \"body '(left|right|upper_left|upper_right|top)' at\" output"), 0);
+        ck_assert_int_eq(small_shell("grep -Eq \"body '(left|middle|right|upper_left|upper_right|top)' at\" output"),
+                         0);
     }
 }
 END_TEST

@@ -197,11 +197,19 @@ END_TEST
 START_TEST(what_slides_away_is_70) {
     small_put("wedges.yaml", wedges);
     ck_assert_int_eq(
-        small_shell("sed '/name: wall/d; s/friction: 0.21/friction: 0.19/; s/iterations: 300/iterations: 60, cut: 1/' "
-                    "wedges.yaml > away.yaml"),
+        small_shell("sed '/name: wall/d; s/friction: 0.21/friction: 0.19/; s/iterations: 300/iterations: 60, cut: 1/; "
+                    "s/displacement: .free, -0.05 mm./traction: [0, -100 kPa]/' wedges.yaml > away.yaml"),
         0);
     small_expect("run away.yaml -t 1 -q -o away", 70, "body 'upper'");
     small_expect("run away.yaml -t 1 -q -o away", 70, "friction does not settle within 60 iterations");
+    // Above its slope it stays. Where it is given how far it comes down, it comes to rest where it lies on nothing.
+    small_expect("run away.yaml -t 1 -q -o stays --set contact.friction=0.21", 0, NULL);
+    double up[ROWS];
+    small_expect("run away.yaml -t 1 -q -o beside --set 'boundaries[1]={name: press, body: upper, group: side3, "
+                 "displacement: [free, -0.05 mm]}'",
+                 0, NULL);
+    const int last = read_column("beside", "wall.base.force_y", up) - 1;
+    ck_assert_double_eq_tol(up[last], 0, 1e-6);
 }
 END_TEST
 

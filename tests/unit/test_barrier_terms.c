@@ -110,6 +110,71 @@ START_TEST(friction_that_follows_has_its_derivative) {
 }
 END_TEST
 
+// The gradient of friction's potential where surfaces that slip come apart, at u, and its energy.
+static double associated(const barrier_case *c, const double *from, const double *u, double *g) {
+    const brunt_team team = {c->threads, NULL};
+    const brunt_term rub = brunt_barrier_friction_term(c->barrier);
+    brunt_barrier_associate(c->barrier, from);
+    ck_assert_int_eq(rub.ops->look(rub.self, &team, u, NULL, NULL), BRUNT_OK);
+    memset(g, 0, (size_t)c->nodes * 2 * sizeof *g);
+    rub.ops->gradient(rub.self, &team, u, g);
+    return rub.ops->energy(rub.self, &team, u).value;
+}
+
+// A point is pressed onto a flat surface and slides. The potential's forces are Coulomb's where the round began, of
+// what presses there, and its energy is 0; farther on they are its slopes, by which it is pushed off more than the
+// barrier does by what it has slid on; where it slides back, less. Its Hessian with the barrier's is symmetric and
+// positive.
+START_TEST(associated_friction_is_coulombs_where_it_began) {
+    barrier_case *c = case_begin(2);
+    const brunt_team team = {c->threads, NULL};
+    const double distance = 0.01, creep = 1e-4, mu = 0.4, way = 5e-4, h = 1e-8;
+    case_polygon(c, 0, (double[][2]){{-1, 0}, {1, 0}, {0, -1}}, 3);
+    case_polygon(c, 1, (double[][2]){{0.1, 0.4 * distance}, {0.3, 1}, {-0.1, 1}}, 3);
+    case_pair(c, 0, 1, distance, 1e5)->friction = mu;
+    c->pair[0].slip_speed = creep / c->dt;
+    case_ready(c);
+    double *u = case_unknowns(c), *from = case_unknowns(c), *g = case_unknowns(c), *other = case_unknowns(c);
+    const brunt_term push = brunt_barrier_term(c->barrier);
+    const int32_t x = 2 * c->node[3], y = x + 1;
+    for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = from[2 * c->node[v]] = way;
+    case_look(c, u, NULL);
+    push.ops->gradient(push.self, &team, u, other);
+    const double pressed = -other[y], before = associated(c, from, u, g);
+    ck_assert_double_eq(before, 0);
+    ck_assert_double_eq_tol(g[x], mu * pressed, 1e-12 * pressed);
+    ck_assert_double_eq_tol(g[y], 0, 1e-12 * pressed);
+    const brunt_barrier_value at = brunt_barrier_at(0.4 * distance, distance, 1e5);
+    for (int back = 0; back < 2; back++) {
+        const double more = (back ? -1 : 1) * 2e-4;
+        for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = way + more;
+        associated(c, from, u, g);
+        const double presses = pressed * brunt_barrier_at(0.4 * distance - mu * more, distance, 1e5).db / at.db;
+        ck_assert_double_eq_tol(g[x], mu * presses, 1e-12 * presses);
+        ck_assert_double_eq_tol(g[y], pressed - presses, 1e-12 * presses);
+        ck_assert(back ? presses < pressed : presses > pressed);
+        for (int k = 0; k < 2; k++) { // its slopes, as far as what it comes nearer by is not bounded
+            const int32_t dof = k ? y : x;
+            double value[2];
+            for (int side = 0; side < 2; side++) {
+                for (int32_t v = 3; v < 6; v++) u[2 * c->node[v] + k] += (side ? -1 : 1) * h;
+                value[side] = associated(c, from, u, other);
+                for (int32_t v = 3; v < 6; v++) u[2 * c->node[v] + k] -= (side ? -1 : 1) * h;
+            }
+            ck_assert_double_eq_tol((value[0] - value[1]) / (2 * h), g[dof], 1e-6 * pressed);
+        }
+    }
+    // Bounded: far back it presses no less than a part, where what is given back would leave it nothing.
+    for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = 0, from[2 * c->node[v]] = 40 * way;
+    associated(c, from, u, g);
+    const double least = brunt_barrier_at(0.4 * distance - at.db / at.ddb, distance, 1e5).db / at.db;
+    ck_assert_double_eq_tol(g[y], pressed * (1 - least), 1e-3 * pressed);
+    ck_assert_double_eq_tol(g[x], 0, 1e-6 * pressed);
+    brunt_barrier_associate(c->barrier, NULL);
+    free(u), free(from), free(g), free(other), case_end(c);
+}
+END_TEST
+
 // A point slides on a flat surface; friction that follows what presses was looked at where it had slid one way, and is
 // tried where it has slid the other. The force, an unknown of its own, stays what it was, by w + dw of the smooth form,
 // and leaps once that place is looked at: its slope there is twice that of what has slipped on, which would be none.
@@ -544,6 +609,7 @@ int main(void) {
     tcase_add_test(terms, derivatives_of_whole_terms);
     tcase_add_test(terms, friction_that_follows_has_its_derivative);
     tcase_add_test(terms, friction_that_turns_round_is_tried_with_its_force);
+    tcase_add_test(terms, associated_friction_is_coulombs_where_it_began);
     tcase_add_test(terms, load_steps_rub_from_where_surfaces_meet);
     tcase_add_test(terms, sums_are_constant_along_a_polygon);
     tcase_add_test(terms, sums_are_constant_along_a_triangulation);
