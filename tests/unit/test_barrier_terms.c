@@ -135,7 +135,7 @@ START_TEST(associated_friction_is_coulombs_where_it_began) {
     c->pair[0].slip_speed = creep / c->dt;
     case_ready(c);
     double *u = case_unknowns(c), *from = case_unknowns(c), *g = case_unknowns(c), *other = case_unknowns(c);
-    const brunt_term push = brunt_barrier_term(c->barrier);
+    const brunt_term push = brunt_barrier_term(c->barrier), rub = brunt_barrier_friction_term(c->barrier);
     const int32_t x = 2 * c->node[3], y = x + 1;
     for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = from[2 * c->node[v]] = way;
     case_look(c, u, NULL);
@@ -158,18 +158,18 @@ START_TEST(associated_friction_is_coulombs_where_it_began) {
             double value[2];
             for (int side = 0; side < 2; side++) {
                 for (int32_t v = 3; v < 6; v++) u[2 * c->node[v] + k] += (side ? -1 : 1) * h;
-                value[side] = associated(c, from, u, other);
+                value[side] = rub.ops->energy(rub.self, &team, u).value; // wherever it was looked at
                 for (int32_t v = 3; v < 6; v++) u[2 * c->node[v] + k] -= (side ? -1 : 1) * h;
             }
             ck_assert_double_eq_tol((value[0] - value[1]) / (2 * h), g[dof], 1e-6 * pressed);
         }
     }
     // Bounded: far back it presses no less than a part, where what is given back would leave it nothing.
-    for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = 0, from[2 * c->node[v]] = 40 * way;
+    for (int32_t v = 3; v < 6; v++) u[2 * c->node[v]] = way, from[2 * c->node[v]] = 40 * way;
     associated(c, from, u, g);
     const double least = brunt_barrier_at(0.4 * distance - at.db / at.ddb, distance, 1e5).db / at.db;
     ck_assert_double_eq_tol(g[y], pressed * (1 - least), 1e-3 * pressed);
-    ck_assert_double_eq_tol(g[x], 0, 1e-6 * pressed);
+    ck_assert(g[x] > 0 && g[x] < 1e-2 * mu * pressed); // and rubs with next to nothing
     brunt_barrier_associate(c->barrier, NULL);
     free(u), free(from), free(g), free(other), case_end(c);
 }
