@@ -10,13 +10,6 @@
 
 enum { GROUP = 1024, MAX_GROUPS = 8 };
 
-static struct brunt_constraint_column column_of(int32_t constraint, const brunt_constraint_entry *entry) {
-    return (struct brunt_constraint_column){
-        constraint,
-        {entry->weight[0], entry->weight[1], entry->weight[2]},
-        {entry->height_gradient[0], entry->height_gradient[1], entry->height_gradient[2]}};
-}
-
 // Points in groups of their order, so many each, but no more groups than MAX_GROUPS.
 static int32_t group_size(const brunt_constraint_set *p) {
     const int32_t even = (p->constraint_count + MAX_GROUPS - 1) / MAX_GROUPS;
@@ -62,15 +55,11 @@ static void fill_columns(void *context, int64_t begin, int64_t end, int worker) 
         int32_t *at = p->column_at + g * p->dof_node_count;
         for (int32_t k = (int32_t)g * size; k < (g + 1) * size && k < p->constraint_count; k++) {
             const brunt_constraint *constraint = &p->constraint[k];
-            const int32_t friction_point = p->constraint_count + constraint->friction_point - 1;
-            memcpy(p->applied[k].facet, constraint->facet, sizeof constraint->facet);
-            if (constraint->friction_point)
-                memcpy(p->applied[friction_point].facet, constraint->facet, sizeof constraint->facet);
             for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
-                const int32_t node = p->entry[e].dof_node;
-                p->column[at[node]++] = column_of(k, &p->entry[e]);
+                int32_t *next = &at[p->entry[e].dof_node];
+                p->column[(*next)++] = (struct brunt_constraint_column){k, e};
                 if (constraint->friction_point)
-                    p->column[at[node]++] = column_of(friction_point, &p->entry[e + constraint->count]);
+                    p->column[(*next)++] = (struct brunt_constraint_column){k, e + constraint->count};
             }
         }
     }
@@ -78,12 +67,11 @@ static void fill_columns(void *context, int64_t begin, int64_t end, int worker) 
 
 int brunt_constraints_make_columns(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
     const int32_t groups = (p->constraint_count + group_size(p) - 1) / group_size(p);
-    size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1,
-           points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
+    const size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1;
     if (BRUNT_CAPACITY(p->column, entries, 0, "entries of contact points", error) ||
         BRUNT_CAPACITY(p->column_first, dof_nodes, 0, "nodes that contact moves", error) ||
         BRUNT_CAPACITY(p->column_at, dof_nodes * (size_t)groups, 0, "nodes of groups of contact points", error) ||
-        BRUNT_CAPACITY(p->applied, points, 0, "impulses of contact points", error))
+        BRUNT_CAPACITY(p->given, entries, 0, "impulses of contact points", error))
         return BRUNT_FAILED;
     brunt_parallel(threads, groups, 1, count_entries, p, timer);
     place_columns(p, groups);

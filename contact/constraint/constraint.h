@@ -37,7 +37,6 @@ typedef struct brunt_dof_node {
     // [kg] sum of |weight| effective mass of the constraints on it: what they push with, and what they rub with
     double load, load_t;
     bool crossed; // some push along what others rub along: both loads are of the greater weights
-    bool turns;   // some of the constraints on it
     bool angular; // v[0] is an angular velocity: entries have levers in place of weights
 } brunt_dof_node;
 
@@ -102,11 +101,9 @@ typedef struct brunt_constraint_set {
     brunt_dof_node *dof_node;
     size_t dof_node_capacity;
     int32_t dof_node_count;
-    // Which points press on a degree-of-freedom node: copies of their entries by dof_node, in the order of the points,
-    // with what the sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
+    // Which points press on a degree-of-freedom node: their entries by node, in the order of the points.
     struct brunt_constraint_column {
-        int32_t constraint; // from the number of points on: friction point
-        double weight[3], height_gradient[3];
+        int32_t constraint, entry; // whose friction point has an entry of its own, behind it
     } * column;
     size_t column_capacity;
     int32_t *column_first;
@@ -115,10 +112,13 @@ typedef struct brunt_constraint_set {
     size_t column_at_capacity;
     double (*begun)[3]; // [m/s] of each node before the first sweep
     size_t begun_capacity;
-    struct brunt_constraint_impulse {
-        double impulse[3], facet[3];
-    } * applied; // of each point, then of each friction point
-    size_t applied_capacity;
+    // [N s] of each entry: what the sweep gives its node. A fourth number does not count, so that they are added as
+    // one. Before the sweeps: the share of the constraint that the node gets of its pushes, of its friction, the
+    // greater of both, and its effective mass.
+    double (*given)[4];
+    size_t given_capacity;
+    struct brunt_constraint_block *block; // of so many constraints at a time, where they are alike (block.h)
+    size_t block_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
     double kick;            // [s] what springs push over
@@ -171,7 +171,11 @@ void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_cons
                                double u[3]);
 // What friction does to a constraint with the normal impulse it has, as far as it is concerned; added to `rub`.
 void brunt_constraint_rub(const brunt_constraint_set *set, brunt_constraint *constraint, double rub[3]);
-// Gives degree-of-freedom nodes the impulses in `applied`.
+// Makes `given` of a constraint's entries: an impulse where it pushes and one where it rubs, which without a friction
+// point is part of the first.
+void brunt_constraint_give(const brunt_constraint_set *set, const brunt_constraint *constraint, const double push[3],
+                           const double rub[3]);
+// Gives degree-of-freedom nodes the impulses in `given`.
 void brunt_constraints_apply(brunt_constraint_set *set, int threads, brunt_timer *timer);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED: out of memory.

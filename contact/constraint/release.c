@@ -125,25 +125,29 @@ static double sum_left(brunt_constraint_set *p) {
     return all;
 }
 
-// The impulse with which what is left to be given back is: that its work, as far as all give alike, is that.
+// The impulse with which what is left of a constraint is given back, and its friction: that its work, as far as all
+// give alike, is that.
+static void kick(const brunt_constraint_set *p, brunt_constraint *c, brunt_release *r, double push[3], double rub[3]) {
+    if (!releases(p, c)) return;
+    const double unit = c->scale / c->row_sum, left = payable(c->account) * r->left;
+    if (!(left > 0)) return;
+    if (!(r->impulse > 0)) r->pressed = pressed(p, c);
+    const double b = along(p, c, true) + along(p, c, false) + r->pressed + r->impulse / unit;
+    const double J = 0.5 * unit * (sqrt(b * b + 8 * left / unit) - b);
+    c->normal_impulse = r->impulse += J;
+    for (int a = 0; a < 3; a++) push[a] = J * c->n[a];
+    if (c->friction > 0) brunt_constraint_rub(p, c, rub);
+}
+
 static void give(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         brunt_constraint *c = &p->constraint[k];
         brunt_release *r = &p->release[k];
-        double *push = p->applied[k].impulse,
-               *rub = c->friction_point ? p->applied[p->constraint_count + c->friction_point - 1].impulse : push;
-        for (int a = 0; a < 3; a++) push[a] = rub[a] = 0;
-        if (!releases(p, c)) continue;
-        const double unit = c->scale / c->row_sum, left = payable(c->account) * r->left;
-        if (!(left > 0)) continue;
-        if (!(r->impulse > 0)) r->pressed = pressed(p, c);
-        const double b = along(p, c, true) + along(p, c, false) + r->pressed + r->impulse / unit;
-        const double J = 0.5 * unit * (sqrt(b * b + 8 * left / unit) - b);
-        c->normal_impulse = r->impulse += J;
-        for (int a = 0; a < 3; a++) push[a] = J * c->n[a];
-        if (c->friction > 0) brunt_constraint_rub(p, c, rub);
+        double push[3] = {0}, apart[3] = {0};
+        kick(p, c, r, push, c->friction_point ? apart : push);
+        brunt_constraint_give(p, c, push, apart);
     }
 }
 

@@ -5,13 +5,13 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/error.h"
-#include "base/memory.h"
 #include "base/parallel.h"
+#include "contact/constraint/block.h"
 #include "contact/constraint/columns.h"
 #include "contact/constraint/release.h"
 
 enum { GRAIN = 128 };
+_Static_assert(GRAIN % BRUNT_DOUBLES == 0, "a chunk is whole blocks");
 static const double DIVERGES = 10; // times the correction of the first sweep is left
 
 // Three components, and one number that does not count: whatever follows them in memory.
@@ -20,94 +20,6 @@ static inline quad load_quad(const double *from) {
     quad v;
     memcpy(&v, from, sizeof v);
     return v;
-}
-
-void brunt_constraints_validate(const brunt_constraint_set *p) {
-    for (int32_t s = 0; s < p->dof_node_count; s++)
-        for (int a = 0; a < 3; a++) BRUNT_ASSERT(p->dof_node[s].inverse[a] >= 0);
-    for (int32_t e = 0; e < p->entry_count; e++)
-        BRUNT_ASSERT(p->entry[e].dof_node >= 0 && p->entry[e].dof_node < p->dof_node_count);
-    for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_constraint *c = &p->constraint[k];
-        const int32_t end = c->first + (c->friction_point ? 2 : 1) * c->count;
-        BRUNT_ASSERT(c->first >= 0 && c->count > 0 && end <= p->entry_count);
-        BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
-        BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
-        BRUNT_ASSERT(c->account && c->friction >= 0 && c->spring >= 0 && (c->spring > 0 || c->least <= 0));
-        BRUNT_ASSERT(c->normal_impulse >= fmin(c->least, 0));
-        BRUNT_ASSERT(!c->sticks || c->friction > 0);
-    }
-}
-
-void brunt_constraints_clear(brunt_constraint_set *p) {
-    p->constraint_count = p->entry_count = p->friction_point_count = p->dof_node_count = 0;
-}
-
-void brunt_constraints_free(brunt_constraint_set *p) {
-    brunt_free(p->constraint);
-    brunt_free(p->entry);
-    brunt_free(p->friction_point);
-    brunt_free(p->dof_node);
-    brunt_free(p->column);
-    brunt_free(p->column_first);
-    brunt_free(p->column_at);
-    brunt_free(p->begun);
-    brunt_free(p->applied);
-    brunt_free(p->changed);
-    brunt_free(p->point_past);
-    brunt_free(p->dof_past);
-    brunt_free(p->turned_back);
-    brunt_free(p->release);
-    memset(p, 0, sizeof *p);
-}
-
-#define ADD(p, array, what, error)                                                                                     \
-    (BRUNT_CAPACITY_MORE((p)->array, what, error)                                                                      \
-         ? BRUNT_NONE                                                                                                  \
-         : (memset(&(p)->array[(p)->array##_count], 0, sizeof *(p)->array), (p)->array##_count++))
-
-int32_t brunt_constraints_dof_node(brunt_constraint_set *p, brunt_error *error) {
-    return ADD(p, dof_node, "nodes that contact moves", error);
-}
-
-int32_t brunt_constraints_add(brunt_constraint_set *p, brunt_error *error) {
-    int32_t at = ADD(p, constraint, "contact points", error);
-    if (at >= 0) p->constraint[at].first = p->entry_count;
-    return at;
-}
-
-int32_t brunt_constraints_entry(brunt_constraint_set *p, int32_t dof_node, double weight, brunt_error *error) {
-    int32_t at = ADD(p, entry, "entries of contact points", error);
-    if (at < 0) return BRUNT_NONE;
-    p->entry[at].dof_node = dof_node;
-    for (int a = 0; a < 3; a++) p->entry[at].weight[a] = weight;
-    p->constraint[p->constraint_count - 1].count++;
-    return at;
-}
-
-int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x[3], brunt_error *error) {
-    const int32_t at = ADD(p, friction_point, "friction points", error), first = p->entry_count;
-    brunt_constraint *constraint = &p->constraint[p->constraint_count - 1];
-    if (at < 0) return BRUNT_NONE;
-    memcpy(p->friction_point[at].x, x, sizeof p->friction_point[at].x);
-    for (int32_t e = 0; e < constraint->count; e++) {
-        const int32_t entry = ADD(p, entry, "entries of contact points", error);
-        if (entry < 0) return BRUNT_NONE;
-        p->entry[entry].dof_node = p->entry[constraint->first + e].dof_node;
-    }
-    constraint->friction_point = at + 1;
-    return first;
-}
-
-int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries, int32_t dofs,
-                              brunt_error *error) {
-    return BRUNT_CAPACITY(p->constraint, (size_t)points + 1, (size_t)p->constraint_count, "contact points", error) ||
-                   BRUNT_CAPACITY(p->entry, (size_t)entries + 1, (size_t)p->entry_count, "entries of contact points",
-                                  error) ||
-                   BRUNT_CAPACITY(p->dof_node, (size_t)dofs + 1, (size_t)p->dof_node_count, "nodes that contact moves",
-                                  error)
-               ? BRUNT_FAILED
-               : BRUNT_OK;
 }
 
 // Of what does not turn, with the weights of `entry` and the `count` - 1 after it.
@@ -156,29 +68,50 @@ static void apply_transpose(const brunt_constraint *constraint, const brunt_cons
     for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + rise * constraint->facet[a];
 }
 
+void brunt_constraint_give(const brunt_constraint_set *p, const brunt_constraint *constraint, const double push[3],
+                           const double rub[3]) {
+    for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+        apply_transpose(constraint, &p->entry[e], push, p->given[e]);
+        if (constraint->friction_point)
+            apply_transpose(constraint, &p->entry[e + constraint->count], rub, p->given[e + constraint->count]);
+    }
+}
+
 static int reserve_sweeps(brunt_constraint_set *p, brunt_error *error) {
     const size_t points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
     return BRUNT_CAPACITY(p->begun, (size_t)p->dof_node_count + 1, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->block, points / BRUNT_DOUBLES + 1, 0, "blocks of contact points", error) ||
                    BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error)
                ? BRUNT_FAILED
                : BRUNT_OK;
 }
 
+// The block that begins with constraint k, or NULL: it is on its own.
+static brunt_constraint_block *block_at(const brunt_constraint_set *p, int64_t k) {
+    brunt_constraint_block *block = &p->block[k / BRUNT_DOUBLES];
+    return block->count ? block : NULL;
+}
+static int64_t after(const brunt_constraint_set *p, int64_t k) { return block_at(p, k) ? k + BRUNT_DOUBLES : k + 1; }
+
 // Effective mass of each point alone, without its images: half of a body is then solved as the whole is. Points that
 // nothing can move (all masses infinite) get 0.
+static void weigh_constraint(const brunt_constraint_set *p, brunt_constraint *constraint) {
+    double alone = -constraint->image;
+    for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+        double J[3];
+        apply_transpose(constraint, &p->entry[e], constraint->n, J);
+        const double *inverse = p->dof_node[p->entry[e].dof_node].inverse;
+        for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
+    }
+    constraint->scale = alone > 0 ? 1 / alone : 0;
+}
+
 static void weigh_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
-        brunt_constraint *constraint = &p->constraint[k];
-        double alone = -constraint->image;
-        for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
-            double J[3];
-            apply_transpose(constraint, &p->entry[e], constraint->n, J);
-            const double *inverse = p->dof_node[p->entry[e].dof_node].inverse;
-            for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
-        }
-        constraint->scale = alone > 0 ? 1 / alone : 0;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
+        if (k % BRUNT_DOUBLES == 0) brunt_block_make(p, k / BRUNT_DOUBLES);
+        if (!block_at(p, k)) weigh_constraint(p, &p->constraint[k]);
     }
 }
 
@@ -193,11 +126,30 @@ static double lever(const brunt_constraint_set *p, const double height_gradient[
     return p->levers ? brunt_coulomb_norm(3, height_gradient) : 0;
 }
 
-// The most of its impulse that a constraint gives a component of a node.
-static double share_of(const brunt_constraint_set *p, const brunt_dof_node *node,
-                       const struct brunt_constraint_column *by) {
-    return node->angular ? brunt_coulomb_norm(3, by->height_gradient)
-                         : greatest_component(by->weight) + lever(p, by->height_gradient);
+// The most of its impulse that an entry gives a component of its node.
+static double share_of(const brunt_constraint_set *p, const brunt_constraint_entry *entry) {
+    return p->dof_node[entry->dof_node].angular ? brunt_coulomb_norm(3, entry->height_gradient)
+                                                : greatest_component(entry->weight) + lever(p, entry->height_gradient);
+}
+
+static void share_constraint(const brunt_constraint_set *p, const brunt_constraint *constraint) {
+    for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+        const double push = share_of(p, &p->entry[e]);
+        const double rub = constraint->friction_point ? share_of(p, &p->entry[e + constraint->count]) : push;
+        const double share[4] = {push, rub, fmax(push, rub), constraint->scale};
+        memcpy(p->given[e], share, sizeof share);
+    }
+}
+
+static void share_constraints(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
+        if (block_at(p, k))
+            brunt_block_share(p, block_at(p, k));
+        else
+            share_constraint(p, &p->constraint[k]);
+    }
 }
 
 // Whether diagonal matrix D leaves unit vector n in its direction.
@@ -212,9 +164,22 @@ static bool keeps_direction(const double D[3], const double n[3]) {
 // normals, or the turning of a facet.
 static bool is_crossed(const brunt_constraint_set *p, const double normal[3],
                        const struct brunt_constraint_column *column) {
-    const double *n = p->constraint[column->constraint].n, *gradient = column->height_gradient;
+    const double *n = p->constraint[column->constraint].n, *gradient = p->entry[column->entry].height_gradient;
     return n[0] != normal[0] || n[1] != normal[1] || n[2] != normal[2] || gradient[0] != 0 || gradient[1] != 0 ||
-           gradient[2] != 0 || !keeps_direction(column->weight, normal);
+           gradient[2] != 0 || !keeps_direction(p->entry[column->entry].weight, normal);
+}
+
+// Whether that is so of any of a node's constraints. Without friction points what pushes and what rubs are the same
+// weights, and both loads as well.
+static bool crosses(const brunt_constraint_set *p, const brunt_dof_node *node, int32_t first, int32_t last) {
+    if (!p->friction_point_count || first == last) return false;
+    const double *normal = p->constraint[p->column[first].constraint].n;
+    bool crossed = !keeps_direction(node->inverse, normal);
+    for (int32_t q = first; q < last && !crossed; q++) {
+        crossed = is_crossed(p, normal, &p->column[q]);
+        if (p->constraint[p->column[q].constraint].friction_point) q++;
+    }
+    return crossed;
 }
 
 // What constraints with friction points push and rub with are different weights. Where the two do not cross, each has
@@ -225,21 +190,13 @@ static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         brunt_dof_node *node = &p->dof_node[s];
         const int32_t first = p->column_first[s], last = p->column_first[s + 1];
-        const double *normal = first < last ? p->constraint[p->column[first].constraint].n : NULL;
         double push = 0, rub = 0, both = 0;
         memcpy(p->begun[s], node->v, sizeof p->begun[s]);
-        node->turns = false;
-        node->crossed = normal && !keeps_direction(node->inverse, normal);
+        node->crossed = crosses(p, node, first, last);
         for (int32_t q = first; q < last; q++) {
-            const struct brunt_constraint_column *by = &p->column[q];
-            const brunt_constraint *constraint = &p->constraint[by->constraint];
-            const double along = share_of(p, node, by);
-            double across = along;
-            node->turns = node->turns || constraint->turns;
-            node->crossed = node->crossed || is_crossed(p, normal, by);
-            if (constraint->friction_point) across = share_of(p, node, &p->column[++q]);
-            push += along * constraint->scale, rub += across * constraint->scale;
-            both += fmax(along, across) * constraint->scale;
+            const double *share = p->given[p->column[q].entry], scale = share[3];
+            push += share[0] * scale, rub += share[1] * scale, both += share[2] * scale;
+            if (p->friction_point_count && p->constraint[p->column[q].constraint].friction_point) q++;
         }
         node->load = node->crossed ? both : push, node->load_t = node->crossed ? both : rub;
     }
@@ -262,36 +219,42 @@ static double spring_impulse(const brunt_constraint_set *p, const brunt_constrai
 }
 
 // Row sums, in units of the effective masses.
+static void sum_row(const brunt_constraint_set *p, brunt_constraint *constraint) {
+    double along[3] = {0}, across[3] = {0};
+    constraint->row_sum = constraint->row_sum_t = 0;
+    for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+        const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
+        const brunt_constraint_entry *own = &p->entry[e],
+                                     *rubs = own + (constraint->friction_point ? constraint->count : 0);
+        if (s->angular) {
+            add_levers(s, own, rubs, along, across);
+            continue;
+        }
+        const double *weight = own->weight, *other = rubs->weight, turn = lever(p, own->height_gradient),
+                     rub_turn = lever(p, rubs->height_gradient);
+        for (int a = 0; a < 3; a++) {
+            const double push = fabs(weight[a]) + turn, rub = fabs(other[a]) + rub_turn, both = fmax(push, rub);
+            along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
+            across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        constraint->row_sum += constraint->n[a] * constraint->n[a] * along[a];
+        constraint->row_sum_t = fmax(constraint->row_sum_t, across[a]);
+    }
+    constraint->row_sum = fmax(constraint->row_sum, 1);
+    constraint->row_sum_t = fmax(constraint->row_sum_t, 1);
+    if (constraint->spring > 0) constraint->least = spring_impulse(p, constraint);
+}
+
 static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
-        brunt_constraint *constraint = &p->constraint[k];
-        double along[3] = {0}, across[3] = {0};
-        constraint->row_sum = constraint->row_sum_t = 0;
-        for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
-            const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
-            const brunt_constraint_entry *own = &p->entry[e],
-                                         *rubs = own + (constraint->friction_point ? constraint->count : 0);
-            if (s->angular) {
-                add_levers(s, own, rubs, along, across);
-                continue;
-            }
-            const double *weight = own->weight, *other = rubs->weight, turn = lever(p, own->height_gradient),
-                         rub_turn = lever(p, rubs->height_gradient);
-            for (int a = 0; a < 3; a++) {
-                const double push = fabs(weight[a]) + turn, rub = fabs(other[a]) + rub_turn, both = fmax(push, rub);
-                along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
-                across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
-            }
-        }
-        for (int a = 0; a < 3; a++) {
-            constraint->row_sum += constraint->n[a] * constraint->n[a] * along[a];
-            constraint->row_sum_t = fmax(constraint->row_sum_t, across[a]);
-        }
-        constraint->row_sum = fmax(constraint->row_sum, 1);
-        constraint->row_sum_t = fmax(constraint->row_sum_t, 1);
-        if (constraint->spring > 0) constraint->least = spring_impulse(p, constraint);
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
+        if (block_at(p, k))
+            brunt_block_sum_rows(p, block_at(p, k));
+        else
+            sum_row(p, &p->constraint[k]);
     }
 }
 
@@ -359,28 +322,42 @@ static double turned_back(const brunt_constraint *constraint, const struct brunt
            constraint->scale;
 }
 
+// Adds to `back` how much of its correction goes back, of accelerated sweeps.
+static double sweep_constraint(brunt_constraint_set *p, int64_t k, double *back) {
+    brunt_constraint *constraint = &p->constraint[k];
+    double J[3], apart[3], *rub = constraint->friction_point ? apart : J;
+    struct brunt_constraint_past from = {0};
+    if (p->accelerated) {
+        extrapolate(p->momentum, constraint, &p->point_past[k]);
+        from.normal_impulse = constraint->normal_impulse;
+        memcpy(from.friction_impulse, constraint->friction_impulse, sizeof from.friction_impulse);
+    }
+    const double changed = solve_constraint(p, constraint, J, rub);
+    if (p->accelerated) *back += turned_back(constraint, &from, &p->point_past[k]);
+    brunt_constraint_give(p, constraint, J, rub);
+    return changed;
+}
+
 static void solve_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t c = begin; c < end; c++) {
         double greatest = 0, back = 0;
-        for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k++) {
-            const int32_t friction_point = p->constraint[k].friction_point;
-            double *J = p->applied[k].impulse,
-                   *rub = friction_point ? p->applied[p->constraint_count + friction_point - 1].impulse : J;
-            struct brunt_constraint_past from = {0};
-            if (p->accelerated) {
-                extrapolate(p->momentum, &p->constraint[k], &p->point_past[k]);
-                from.normal_impulse = p->constraint[k].normal_impulse;
-                memcpy(from.friction_impulse, p->constraint[k].friction_impulse, sizeof from.friction_impulse);
-            }
-            double changed = solve_constraint(p, &p->constraint[k], J, rub);
+        for (int64_t k = c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k = after(p, k)) {
+            brunt_constraint_block *block = block_at(p, k);
+            const double changed = block ? brunt_block_solve(p, block) : sweep_constraint(p, k, &back);
             greatest = changed > greatest ? changed : greatest;
-            if (p->accelerated) back += turned_back(&p->constraint[k], &from, &p->point_past[k]);
         }
         p->changed[c] = greatest;
         if (p->accelerated) p->turned_back[c] = back;
     }
+}
+
+static void finish_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
+        if (block_at(p, k)) brunt_block_finish(p, k / BRUNT_DOUBLES);
 }
 
 // The velocities that go with the impulses the next sweep begins with.
@@ -393,37 +370,14 @@ static void carry_on(double momentum, brunt_dof_node *dof_node, struct brunt_dof
     }
 }
 
-// Impulse of the sweep on a degree-of-freedom node.
-static quad plain_impulse(const brunt_constraint_set *p, const struct brunt_constraint_column *by,
-                          const struct brunt_constraint_column *end) {
-    quad sum = {0};
-    for (; by < end; by++) sum += load_quad(by->weight) * load_quad(p->applied[by->constraint].impulse);
-    return sum;
-}
-
-static void turning_impulse(const brunt_constraint_set *p, int32_t first, int32_t last, double sum[3]) {
-    for (int32_t q = first; q < last; q++) {
-        const struct brunt_constraint_column *by = &p->column[q];
-        const struct brunt_constraint_impulse *applied = &p->applied[by->constraint];
-        const double *J = applied->impulse, *gradient = by->height_gradient,
-                     rise = gradient[0] * J[0] + gradient[1] * J[1] + gradient[2] * J[2];
-        for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + rise * applied->facet[a];
-    }
-}
-
 static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         brunt_dof_node *dof_node = &p->dof_node[s];
-        const int32_t first = p->column_first[s], last = p->column_first[s + 1];
-        double sum[3] = {0};
-        if (dof_node->turns) {
-            turning_impulse(p, first, last, sum);
-        } else {
-            const quad plain = plain_impulse(p, p->column + first, p->column + last);
-            for (int a = 0; a < 3; a++) sum[a] = plain[a];
-        }
+        quad sum = {0};
+        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++)
+            sum += load_quad(p->given[p->column[q].entry]);
         for (int a = 0; a < 3; a++) {
             dof_node->impulse[a] += sum[a];
             dof_node->v[a] += sum[a] * dof_node->inverse[a];
@@ -511,6 +465,7 @@ static void take_back(brunt_constraint_set *p) {
         brunt_constraint *constraint = &p->constraint[k];
         constraint->normal_impulse = 0;
         memset(constraint->friction_impulse, 0, sizeof constraint->friction_impulse);
+        if (k % BRUNT_DOUBLES == 0 && block_at(p, k)) brunt_block_take_back(block_at(p, k));
     }
     for (int32_t s = 0; s < p->dof_node_count; s++) {
         memcpy(p->dof_node[s].v, p->begun[s], sizeof p->begun[s]);
@@ -522,6 +477,7 @@ static void take_back(brunt_constraint_set *p) {
 static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
                  bool *converges, brunt_error *error) {
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
+    brunt_parallel(threads, chunks, 1, share_constraints, p, timer);
     brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double start = 0, first = 0, greatest = INFINITY, weight = 1;
@@ -548,13 +504,15 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     p->sweeps = 0, p->levers = false;
     if (!p->constraint_count) return BRUNT_OK;
     if (brunt_constraints_make_columns(p, threads, timer, error) || reserve_sweeps(p, error)) return BRUNT_FAILED;
-    brunt_parallel(threads, (p->constraint_count + GRAIN - 1) / GRAIN, 1, weigh_constraints, p, timer);
+    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
+    brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
     if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     if (!converges) {
         take_back(p);
         p->levers = true;
         if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     }
+    brunt_parallel(threads, chunks, 1, finish_chunks, p, timer);
     if (p->gives_back && brunt_constraints_release(p, threads, timer, error)) return BRUNT_FAILED;
     account_constraints(p);
     return BRUNT_OK;

@@ -104,10 +104,10 @@ static void check_columns(const brunt_constraint_set *p, int rough) {
         for (int k = i; k <= i + 1 && k < p->constraint_count; k++) {
             const double weight = k == i ? 1 : -1;
             ck_assert_int_eq(p->column[q].constraint, k);
-            ck_assert(p->column[q++].weight[0] == weight);
+            ck_assert(p->entry[p->column[q++].entry].weight[0] == weight);
             if (k % rough) continue;
-            ck_assert_int_eq(p->column[q].constraint, p->constraint_count + p->constraint[k].friction_point - 1);
-            ck_assert(p->column[q++].weight[0] == 0.5 * weight);
+            ck_assert_int_eq(p->column[q].constraint, k);
+            ck_assert(p->entry[p->column[q++].entry].weight[0] == 0.5 * weight);
         }
         ck_assert_int_eq(p->column_first[i + 1], q);
     }
@@ -149,6 +149,85 @@ START_TEST(columns_are_in_the_order_of_the_points) {
         solve_long_chain(count[i], 1, one);
         solve_long_chain(count[i], 3, three);
         ck_assert_mem_eq(one, three, (size_t)count[i] * sizeof one[0]);
+    }
+}
+END_TEST
+
+// Nodes above a sheet of quadrilaterals, each on one of them and pressed against it at an angle; all share corners with
+// their neighbours. `alone`: one in eight has a sixth entry, of weight 0, so that they are in no block.
+enum { ROW = 9, ABOVE = 67 };
+static double some(int k) { return 0.5 + 0.5 * sin(7.3 * k + 1); }
+static void make_sheet(brunt_constraint_set *p, brunt_impulse_account *account, double height, bool alone) {
+    memset(p, 0, sizeof *p);
+    memset(account, 0, sizeof *account);
+    for (int i = 0; i < (ROW + 1) * (ROW + 1) + ABOVE; i++) {
+        ck_assert_int_eq(brunt_constraints_dof_node(p, NULL), i);
+        brunt_dof_node *s = &p->dof_node[i];
+        const bool above = i >= (ROW + 1) * (ROW + 1);
+        for (int a = 0; a < 3; a++)
+            s->v[a] = s->old[a] = above ? (a == 2 ? -1 : 0.6) * some(3 * i + a) : 0, s->inverse[a] = 0.5 + some(i);
+        if (i % 17 == 0) s->inverse[i % 3] = 0;
+    }
+    for (int k = 0; k < ABOVE; k++) {
+        const int x = k % ROW, y = k / ROW % ROW, corner[4] = {0, 1, ROW + 2, ROW + 1};
+        const double u = some(2 * k), v = some(5 * k), side[4][2] = {{1 - u, 1 - v}, {u, 1 - v}, {u, v}, {1 - u, v}};
+        ck_assert_int_eq(brunt_constraints_add(p, NULL), k);
+        brunt_constraint *point = &p->constraint[k];
+        const double tilt = 0.2 * some(k), facet[3] = {sin(tilt), 0, cos(tilt)}, n[3] = {0, sin(tilt), cos(tilt)};
+        memcpy(point->facet, facet, sizeof facet), memcpy(point->n, n, sizeof n);
+        point->account = account, point->sign = 1, point->turns = true;
+        point->friction = k % 5 ? (0.3 + 5 * height) * some(k) : 0, point->target = -0.05 * some(k);
+        ck_assert_int_ge(brunt_constraints_entry(p, (ROW + 1) * (ROW + 1) + k, 1, NULL), 0);
+        for (int c = 0; c < 4; c++) {
+            const int32_t at =
+                brunt_constraints_entry(p, y * (ROW + 1) + x + corner[c], -side[c][0] * side[c][1], NULL);
+            p->entry[at].height_gradient[0] = height * (c == 1 || c == 2 ? 1 : -1) * side[c][1];
+            p->entry[at].height_gradient[1] = height * (c > 1 ? 1 : -1) * side[c][0];
+            p->entry[at].height_gradient[2] = -tilt * p->entry[at].height_gradient[0];
+        }
+        if (alone && k % 8 == 3) ck_assert_int_ge(brunt_constraints_entry(p, 0, 0, NULL), 0);
+    }
+}
+
+static void check_same(const double *a, const double *b, int count, double size) {
+    for (int i = 0; i < count; i++) ck_assert_msg(fabs(a[i] - b[i]) < 1e-12 * size, "%.17g, not %.17g", a[i], b[i]);
+}
+
+// What is in a block is pushed and rubbed as it is alone, up to heights at which sweeps have to count how facets turn.
+START_TEST(blocks_do_as_one_alone) {
+    static const double height[] = {0, 0.05, 0.3, 10};
+    for (int k = 0; k < 8; k++) {
+        brunt_constraint_set one, many;
+        brunt_impulse_account account[2];
+        brunt_timer timer = {0};
+        int slips = 0, sticks = 0, lifts = 0;
+        make_sheet(&one, &account[0], height[k / 2], true), make_sheet(&many, &account[1], height[k / 2], false);
+        const int sweeps = k % 2 ? 200 : 6;
+        ck_assert_int_eq(brunt_constraints_solve(&one, sweeps, 1e-4, 1, &timer, NULL), BRUNT_OK);
+        ck_assert_int_eq(brunt_constraints_solve(&many, sweeps, 1e-4, 2, &timer, NULL), BRUNT_OK);
+        ck_assert_int_eq(one.sweeps, many.sweeps);
+        check_same(one.changed, many.changed, 1, 1);
+        ck_assert(one.levers == many.levers && one.levers == (height[k / 2] > 1));
+        for (int i = 0; i < one.dof_node_count; i++) {
+            check_same(one.dof_node[i].v, many.dof_node[i].v, 3, 1);
+            check_same(one.dof_node[i].impulse, many.dof_node[i].impulse, 3, 1);
+        }
+        for (int i = 0; i < ABOVE; i++) {
+            const brunt_constraint *a = &one.constraint[i], *b = &many.constraint[i];
+            check_same(&a->normal_impulse, &b->normal_impulse, 1, 1);
+            check_same(a->friction_impulse, b->friction_impulse, 3, 1);
+            check_same(&a->scale, &b->scale, 1, 1), check_same(&a->row_sum, &b->row_sum, 1, a->row_sum);
+            check_same(&a->row_sum_t, &b->row_sum_t, 1, a->row_sum_t);
+            ck_assert_int_eq(a->slips, b->slips);
+            lifts += !(a->normal_impulse > 0), slips += a->slips;
+            sticks += a->normal_impulse > 0 && a->friction > 0 && !a->slips;
+        }
+        printf("  %.2f above: %d sweeps, %d slip, %d stick, %d lift%s\n", height[k / 2], one.sweeps, slips, sticks,
+               lifts, one.levers ? ", counting levers" : "");
+        ck_assert(slips > 0 && sticks + lifts > 0);
+        check_same(&account[0].friction_loss, &account[1].friction_loss, 1, 1);
+        check_same(&account[0].normal_loss, &account[1].normal_loss, 1, 1);
+        brunt_constraints_free(&one), brunt_constraints_free(&many);
     }
 }
 END_TEST
@@ -289,6 +368,7 @@ int main(void) {
     ADD(no_memory_is_told);
     ADD(columns_are_in_the_order_of_the_points);
     ADD(slivers_do_not_run_away);
+    ADD(blocks_do_as_one_alone);
     ADD(a_tighter_tolerance_leaves_less);
     ADD(whichever_comes_first_ends_them);
     ADD(a_world_takes_both);

@@ -1,0 +1,266 @@
+#include "contact/constraint/block.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LANES = BRUNT_DOUBLES };
+typedef brunt_constraint_block block;
+
+// ------------------------------------------------------------------------------------------ to lanes and back
+
+#if BRUNT_DOUBLES == 8
+typedef double quad __attribute__((vector_size(32)));
+typedef double quad_unaligned __attribute__((vector_size(32), aligned(8), may_alias));
+static inline quad quad_load(const double *from) { return *(const quad_unaligned *)from; }
+static inline void quad_store(double *to, quad a) { *(quad_unaligned *)to = a; }
+#endif
+
+// Three components of each lane from `from[l]`, behind which there is a fourth number that is read, too.
+BRUNT_INLINE void gather(const double *const from[LANES], doubles out[3]) {
+#if BRUNT_DOUBLES == 8
+#define BOTH(l) __builtin_shufflevector(quad_load(from[l]), quad_load(from[(l) + 4]), 0, 1, 2, 3, 4, 5, 6, 7)
+    const doubles r0 = BOTH(0), r1 = BOTH(1), r2 = BOTH(2), r3 = BOTH(3);
+#undef BOTH
+    const doubles low01 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14); // x0 x1 z0 z1 x4 x5 z4 z5
+    const doubles low23 = __builtin_shufflevector(r2, r3, 0, 8, 2, 10, 4, 12, 6, 14);
+    const doubles high01 = __builtin_shufflevector(r0, r1, 1, 9, 3, 11, 5, 13, 7, 15);
+    const doubles high23 = __builtin_shufflevector(r2, r3, 1, 9, 3, 11, 5, 13, 7, 15);
+    out[0] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
+    out[1] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
+    out[2] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
+#else
+    double column[3][LANES] __attribute__((aligned(64)));
+    for (int l = 0; l < LANES; l++)
+        for (int a = 0; a < 3; a++) column[a][l] = from[l][a];
+    for (int a = 0; a < 3; a++) out[a] = doubles_load(column[a]);
+#endif
+}
+
+// Four numbers of each lane to `to[l]`.
+BRUNT_INLINE void scatter(double *const to[LANES], doubles x, doubles y, doubles z, doubles w) {
+#if BRUNT_DOUBLES == 8
+    const doubles low = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14); // x0 y0 x2 y2 x4 y4 x6 y6
+    const doubles high = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+    const doubles low_z = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
+    const doubles high_z = __builtin_shufflevector(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
+    const doubles r02 = __builtin_shufflevector(low, low_z, 0, 1, 8, 9, 2, 3, 10, 11);
+    const doubles r46 = __builtin_shufflevector(low, low_z, 4, 5, 12, 13, 6, 7, 14, 15);
+    const doubles r13 = __builtin_shufflevector(high, high_z, 0, 1, 8, 9, 2, 3, 10, 11);
+    const doubles r57 = __builtin_shufflevector(high, high_z, 4, 5, 12, 13, 6, 7, 14, 15);
+#define HALF(r, k) __builtin_shufflevector(r, r, 4 * (k), 4 * (k) + 1, 4 * (k) + 2, 4 * (k) + 3)
+    quad_store(to[0], HALF(r02, 0)), quad_store(to[1], HALF(r13, 0));
+    quad_store(to[2], HALF(r02, 1)), quad_store(to[3], HALF(r13, 1));
+    quad_store(to[4], HALF(r46, 0)), quad_store(to[5], HALF(r57, 0));
+    quad_store(to[6], HALF(r46, 1)), quad_store(to[7], HALF(r57, 1));
+#undef HALF
+#else
+    for (int l = 0; l < LANES; l++) to[l][0] = x[l], to[l][1] = y[l], to[l][2] = z[l], to[l][3] = w[l];
+#endif
+}
+
+BRUNT_INLINE void gather_v(const brunt_constraint_set *p, const block *b, int e, doubles out[3]) {
+    const double *from[LANES];
+    for (int l = 0; l < LANES; l++) from[l] = p->dof_node[b->dof_node[e][l]].v;
+    gather(from, out);
+}
+BRUNT_INLINE void gather_inverse(const brunt_constraint_set *p, const block *b, int e, doubles out[3]) {
+    const double *from[LANES];
+    for (int l = 0; l < LANES; l++) from[l] = p->dof_node[b->dof_node[e][l]].inverse;
+    gather(from, out);
+}
+BRUNT_INLINE void give(const brunt_constraint_set *p, const block *b, int e, doubles x, doubles y, doubles z,
+                       doubles w) {
+    double *to[LANES];
+    for (int l = 0; l < LANES; l++) to[l] = p->given[b->first[l] + e];
+    scatter(to, x, y, z, w);
+}
+
+// ------------------------------------------------------------------------------------------ made
+
+static bool same(const double a[3]) { return a[0] == a[1] && a[1] == a[2]; }
+
+// Whether a constraint can be in a block: one that lets go, on what stands still or is a facet, with weights of all
+// components, and whose first entry is a slave's.
+static bool fits(const brunt_constraint_set *p, const brunt_constraint *c) {
+    bool fits = c->count <= BRUNT_BLOCK_ENTRIES && !c->friction_point && !c->sticks && c->least == 0 &&
+                !(c->spring > 0) && c->image == 0 && c->plane[0] == 0 && c->plane[1] == 0 && c->plane[2] == 0;
+    for (int32_t e = c->first; e < c->first + c->count && fits; e++)
+        fits = same(p->entry[e].weight) && !p->dof_node[p->entry[e].dof_node].angular;
+    const double *gradient = p->entry[c->first].height_gradient;
+    return fits && gradient[0] == 0 && gradient[1] == 0 && gradient[2] == 0;
+}
+
+static bool are_alike(const brunt_constraint_set *p, int64_t first) {
+    if (p->accelerated || first + LANES > p->constraint_count) return false;
+    for (int l = 0; l < LANES; l++)
+        if (p->constraint[first + l].count != p->constraint[first].count || !fits(p, &p->constraint[first + l]))
+            return false;
+    return true;
+}
+
+static void copy_lane(const brunt_constraint_set *p, const brunt_constraint *c, int l, block *b) {
+    b->first[l] = c->first;
+    for (int e = 0; e < b->count; e++) {
+        const brunt_constraint_entry *entry = &p->entry[c->first + e];
+        b->dof_node[e][l] = entry->dof_node;
+        b->weight[e][l] = entry->weight[0];
+        for (int a = 0; a < 3 && e > 0; a++) b->height_gradient[e - 1][a][l] = entry->height_gradient[a];
+    }
+    for (int a = 0; a < 3; a++) b->n[a][l] = c->n[a], b->facet[a][l] = c->facet[a];
+    b->target[l] = c->target, b->friction[l] = c->friction;
+    b->rubs = b->rubs || c->friction > 0;
+}
+
+// What entry e gives its node of an impulse.
+BRUNT_INLINE void transpose(const block *b, int e, const doubles J[3], doubles out[3]) {
+    if (e == 0) {
+        for (int a = 0; a < 3; a++) out[a] = b->weight[e] * J[a];
+        return;
+    }
+    const doubles *gradient = b->height_gradient[e - 1],
+                  rise = gradient[0] * J[0] + gradient[1] * J[1] + gradient[2] * J[2];
+    for (int a = 0; a < 3; a++) out[a] = b->weight[e] * J[a] + rise * b->facet[a];
+}
+
+static void weigh(const brunt_constraint_set *p, block *b) {
+    doubles alone = {0};
+    for (int e = 0; e < b->count; e++) {
+        doubles J[3], inverse[3];
+        transpose(b, e, b->n, J);
+        gather_inverse(p, b, e, inverse);
+        for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
+    }
+    const doubles zero = {0};
+    b->scale = doubles_select(alone > zero, doubles_set(1) / alone, zero);
+}
+
+void brunt_block_make(brunt_constraint_set *p, int64_t at) {
+    block *b = &p->block[at];
+    b->count = are_alike(p, at * LANES) ? p->constraint[at * LANES].count : 0;
+    if (!b->count) return;
+    b->rubs = false;
+    for (int l = 0; l < LANES; l++) copy_lane(p, &p->constraint[at * LANES + l], l, b);
+    weigh(p, b);
+    brunt_block_take_back(b);
+}
+
+// ------------------------------------------------------------------------------------------ weighed
+
+// What turning the facet adds to the most of its impulse that entry e gives (solve.c).
+BRUNT_INLINE doubles lever(const brunt_constraint_set *p, const block *b, int e) {
+    doubles square = {0};
+    if (!p->levers || e == 0) return square;
+    for (int a = 0; a < 3; a++) square += b->height_gradient[e - 1][a] * b->height_gradient[e - 1][a];
+    return doubles_sqrt(square);
+}
+
+BRUNT_INLINE doubles magnitude(doubles a) { return doubles_max(a, -a); }
+
+void brunt_block_share(const brunt_constraint_set *p, const block *b) {
+    for (int e = 0; e < b->count; e++) {
+        const doubles share = magnitude(b->weight[e]) + lever(p, b, e);
+        give(p, b, e, share, share, share, b->scale);
+    }
+}
+
+void brunt_block_sum_rows(const brunt_constraint_set *p, block *b) {
+    const doubles zero = {0}, one = doubles_set(1);
+    doubles along[3] = {{0}}, across[3] = {{0}}, row_sum = {0}, row_sum_t = {0};
+    for (int e = 0; e < b->count; e++) {
+        const doubles most = magnitude(b->weight[e]) + lever(p, b, e);
+        doubles inverse[3], load, load_t;
+        gather_inverse(p, b, e, inverse);
+        for (int l = 0; l < LANES; l++) {
+            const brunt_dof_node *node = &p->dof_node[b->dof_node[e][l]];
+            load[l] = node->load, load_t[l] = node->load_t;
+        }
+        for (int a = 0; a < 3; a++) {
+            along[a] += most * load * inverse[a];
+            across[a] += most * load_t * inverse[a];
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        row_sum += b->n[a] * b->n[a] * along[a];
+        row_sum_t = doubles_max(across[a], row_sum_t);
+    }
+    b->row_sum = doubles_max(row_sum, one), b->row_sum_t = doubles_max(row_sum_t, one);
+    const doubles_mask moves = b->scale > zero; // what nothing can move gets nothing, at any unit
+    b->unit = doubles_select(moves, b->scale / b->row_sum, one);
+    b->unit_t = doubles_select(moves, b->scale / b->row_sum_t, one);
+}
+
+// ------------------------------------------------------------------------------------------ solved
+
+static inline void relative_velocity(const brunt_constraint_set *p, const block *b, doubles u[3]) {
+    const doubles zero = {0};
+    doubles v[3];
+    gather_v(p, b, 0, v);
+    for (int a = 0; a < 3; a++) u[a] = zero + b->weight[0] * v[a];
+    for (int e = 1; e < b->count; e++) {
+        gather_v(p, b, e, v);
+        const doubles rise = b->facet[0] * v[0] + b->facet[1] * v[1] + b->facet[2] * v[2];
+        for (int a = 0; a < 3; a++) u[a] += b->weight[e] * v[a] + rise * b->height_gradient[e - 1][a];
+    }
+}
+
+// Brings slip to what friction allows, of velocity u, which is `along` the normal; the impulse is added to J. The
+// velocity it is worth.
+static inline doubles rub(block *b, const doubles u[3], doubles along, doubles J[3]) {
+    const doubles zero = {0};
+    doubles wanted[3], change[3], square = {0};
+    for (int a = 0; a < 3; a++) wanted[a] = b->friction_impulse[a] - (u[a] - along * b->n[a]) * b->unit_t;
+    for (int a = 0; a < 3; a++) square += wanted[a] * wanted[a];
+    const doubles size = doubles_sqrt(square), limit = b->friction * b->normal_impulse;
+    b->slips = size > limit;
+    const doubles share = doubles_select(b->slips, limit / size, doubles_set(1));
+    const doubles_mask rubs = (b->friction > zero) & (b->scale > zero);
+    square = zero;
+    for (int a = 0; a < 3; a++) {
+        const doubles now = share * wanted[a];
+        change[a] = doubles_select(rubs, now - b->friction_impulse[a], zero);
+        b->friction_impulse[a] = doubles_select(rubs, now, b->friction_impulse[a]);
+        square += change[a] * change[a];
+        J[a] = doubles_select(rubs, J[a] + change[a], J[a]);
+    }
+    b->slips = b->slips & rubs;
+    return doubles_sqrt(square) / b->unit_t;
+}
+
+double brunt_block_solve(const brunt_constraint_set *p, block *b) {
+    const doubles zero = {0};
+    doubles u[3], J[3], along = {0};
+    relative_velocity(p, b, u);
+    for (int a = 0; a < 3; a++) along += u[a] * b->n[a];
+    const doubles asked = b->normal_impulse + (b->target - along) * b->unit;
+    const doubles now = doubles_select(b->scale > zero, doubles_max(asked, zero), zero);
+    const doubles step = now - b->normal_impulse;
+    b->normal_impulse = now;
+    for (int a = 0; a < 3; a++) J[a] = step * b->n[a];
+    doubles changed = magnitude(step) / b->unit;
+    if (b->rubs) changed = doubles_max(rub(b, u, along, J), changed);
+    for (int e = 0; e < b->count; e++) {
+        doubles out[3];
+        transpose(b, e, J, out);
+        give(p, b, e, out[0], out[1], out[2], zero);
+    }
+    double greatest = 0;
+    for (int l = 0; l < LANES; l++) greatest = changed[l] > greatest ? changed[l] : greatest;
+    return greatest;
+}
+
+void brunt_block_take_back(block *b) {
+    const doubles zero = {0};
+    b->normal_impulse = zero, b->slips = (doubles_mask){0};
+    for (int a = 0; a < 3; a++) b->friction_impulse[a] = zero;
+}
+
+void brunt_block_finish(brunt_constraint_set *p, int64_t at) {
+    const block *b = &p->block[at];
+    for (int l = 0; l < LANES; l++) {
+        brunt_constraint *c = &p->constraint[at * LANES + l];
+        c->scale = b->scale[l], c->row_sum = b->row_sum[l], c->row_sum_t = b->row_sum_t[l];
+        c->normal_impulse = b->normal_impulse[l];
+        for (int a = 0; a < 3; a++) c->friction_impulse[a] = b->friction_impulse[a][l];
+        c->slips = b->slips[l];
+    }
+}

@@ -1,0 +1,32 @@
+// Constraints that are alike, as many at once as a vector holds: those of nodes on facets and on planes, by far the
+// most of what meshes make. A sweep streams a block in place of its constraints and their entries, which are a kilobyte
+// each, and does to each what solve.c does to one alone: which are in blocks changes nothing. Private to the solution.
+#pragma once
+
+#include "base/simd.h"
+#include "contact/constraint/constraint.h"
+
+enum { BRUNT_BLOCK_ENTRIES = 5, BRUNT_BLOCK_MASTERS = BRUNT_BLOCK_ENTRIES - 1 };
+
+typedef struct brunt_constraint_block {
+    int32_t count; // entries of each; 0: they are not alike, and the rest is unused
+    bool rubs;     // some have friction
+    int32_t first[BRUNT_DOUBLES];
+    int32_t dof_node[BRUNT_BLOCK_ENTRIES][BRUNT_DOUBLES];
+    doubles weight[BRUNT_BLOCK_ENTRIES];             // of all components
+    doubles height_gradient[BRUNT_BLOCK_MASTERS][3]; // of all entries but the first
+    doubles n[3], facet[3], target, friction, scale; // as those of the constraints
+    doubles row_sum, row_sum_t, unit, unit_t;        // [kg] `scale` by each row sum
+    doubles normal_impulse, friction_impulse[3];     // [N s]
+    doubles_mask slips;
+} brunt_constraint_block;
+
+// Makes block b of constraints from b * BRUNT_DOUBLES on, with their effective masses, unless they are not alike.
+void brunt_block_make(brunt_constraint_set *set, int64_t b);
+// What share_constraints, sum_rows and solve_constraint of solve.c do; the greatest correction of a sweep [m/s].
+void brunt_block_share(const brunt_constraint_set *set, const brunt_constraint_block *block);
+void brunt_block_sum_rows(const brunt_constraint_set *set, brunt_constraint_block *block);
+double brunt_block_solve(const brunt_constraint_set *set, brunt_constraint_block *block);
+// Back to what was before the first sweep; and to the constraints what the sweeps came to.
+void brunt_block_take_back(brunt_constraint_block *block);
+void brunt_block_finish(brunt_constraint_set *set, int64_t b);
