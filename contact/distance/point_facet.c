@@ -67,40 +67,89 @@ static void triangle_of(const brunt_contact_surface *s, int32_t face, int t, con
     p[2] = node[3] < 0 ? s->x[node[2]] : s->face_centre[face];
 }
 
-// The triangle of a quadrilateral that x is over; `between`: whether it is on the way to another one.
-static int sector(const brunt_contact_surface *s, int32_t face, const double x[3], bool *between) {
-    const double *centre = s->face_centre[face], *normal = s->face_normal[face];
-    const double near = NEAR_SPOKE * s->face_area[face];
-    double r[3], turn[4];
-    *between = false;
-    for (int k = 0; k < 3; k++) r[k] = x[k] - centre[k];
-    for (int t = 0; t < 4; t++) {
-        const double *p = s->x[s->face[face][t]];
-        const double e[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
-        double c[3];
-        cross(e, r, c);
-        turn[t] = dot(c, normal);
-        *between = *between || fabs(turn[t]) < near;
+// Of the four triangles of a quadrilateral about its centre, at once: triangle t has corners t and t + 1.
+typedef double quad __attribute__((vector_size(32)));
+typedef int64_t quad_mask __attribute__((vector_size(32)));
+
+static inline quad quad_dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline quad quad_dot_turned(const quad a[3], const quad b[3]) { return a[1] * b[1] + a[0] * b[0] + a[2] * b[2]; }
+static inline quad quad_set(double a) { return (quad){a, a, a, a}; }
+static inline quad quad_select(quad_mask m, quad a, quad b) { return (quad)(((quad_mask)a & m) | ((quad_mask)b & ~m)); }
+static inline quad next_corner(quad a) { return __builtin_shufflevector(a, a, 1, 2, 3, 0); }
+
+typedef struct four_triangles {
+    quad corner[3];
+    const double *centre, *normal;
+    double area;
+} four_triangles;
+
+static inline four_triangles triangles_of(const brunt_contact_surface *s, int32_t face) {
+    const int32_t *node = s->face[face];
+    const double *a = s->x[node[0]], *b = s->x[node[1]], *c = s->x[node[2]], *d = s->x[node[3]];
+    four_triangles f = {.centre = s->face_centre[face], .normal = s->face_normal[face], .area = s->face_area[face]};
+    for (int k = 0; k < 3; k++) f.corner[k] = (quad){a[k], b[k], c[k], d[k]};
+    return f;
+}
+
+// The one that x is over; `between`: whether it is on the way to another one.
+static inline int sector(const four_triangles *f, const double x[3], bool *between) {
+    const double near = NEAR_SPOKE * f->area;
+    quad r[3], e[3], c[3], normal[3];
+    for (int k = 0; k < 3; k++) {
+        r[k] = quad_set(x[k] - f->centre[k]), e[k] = f->corner[k] - quad_set(f->centre[k]);
+        normal[k] = quad_set(f->normal[k]);
     }
+    c[0] = e[1] * r[2] - e[2] * r[1], c[1] = e[2] * r[0] - e[0] * r[2], c[2] = e[0] * r[1] - e[1] * r[0];
+    const quad turn = quad_dot(c, normal);
+    *between = false;
+    for (int t = 0; t < 4; t++) *between = *between || fabs(turn[t]) < near;
     for (int t = 0; t < 4; t++)
         if (turn[t] >= 0 && turn[(t + 1) % 4] <= 0) return t;
     return 0;
 }
 
+// As on_triangle, of all four.
+static inline void on_triangles(const four_triangles *f, const double x[3], quad d[3], quad_mask *inside) {
+    const quad zero = {0}, one = quad_set(1);
+    quad ab[3], ac[3], ap[3], bp[3], cp[3];
+    for (int k = 0; k < 3; k++) {
+        const quad a = f->corner[k], b = next_corner(a), c = quad_set(f->centre[k]), place = quad_set(x[k]);
+        ab[k] = b - a, ac[k] = c - a, ap[k] = place - a, bp[k] = place - b, cp[k] = place - c;
+    }
+    // Compilers round one of two products before a sum and the other with it: these are the same as on one triangle.
+    const quad d1 = quad_dot(ab, ap), d2 = quad_dot(ac, ap), d3 = quad_dot_turned(ab, bp), d4 = quad_dot_turned(ac, bp),
+               d5 = quad_dot_turned(ab, cp), d6 = quad_dot_turned(ac, cp);
+    const quad va = -(d5 * d4 - d3 * d6), vb = -(d1 * d6 - d5 * d2), vc = -(d3 * d2 - d1 * d4), sum = va + vb + vc;
+    const quad_mask at_a = (d1 <= zero) & (d2 <= zero), at_b = (d3 >= zero) & (d4 <= d3),
+                    at_c = (d6 >= zero) & (d5 <= d6), on_ab = (vc <= zero) & (d1 >= zero) & (d3 <= zero),
+                    on_ac = (vb <= zero) & (d2 >= zero) & (d6 <= zero), on_bc = (va <= zero) & (d4 >= d3) & (d5 >= d6);
+    const quad way = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    quad v = quad_select(on_bc, one - way, vb / sum), w = quad_select(on_bc, way, vc / sum);
+    v = quad_select(on_ac, zero, v), w = quad_select(on_ac, d2 / (d2 - d6), w);
+    v = quad_select(on_ab, d1 / (d1 - d3), v), w = quad_select(on_ab, zero, w);
+    v = quad_select(at_c, zero, v), w = quad_select(at_c, one, w);
+    v = quad_select(at_b, one, v), w = quad_select(at_b, zero, w);
+    v = quad_select(at_a, zero, v), w = quad_select(at_a, zero, w);
+    *inside = ~(at_a | at_b | at_c | on_ab | on_ac | on_bc);
+    for (int k = 0; k < 3; k++) d[k] = ap[k] - v * ab[k] - w * ac[k];
+}
+
 // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
 static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, int32_t face, const double x[3]) {
+    const four_triangles f = triangles_of(s, face);
     double d[4][3], square[4], least = INFINITY;
-    bool inside[4], between, alone = false;
-    const int first = sector(s, face, x, &between);
-    int tested = 0;
-    for (; tested < 4 && !alone; tested++) {
-        const int t = (first + tested) % 4;
-        const double *p[3];
-        triangle_of(s, face, t, p);
-        on_triangle(p, x, d[tested], &inside[tested]);
-        alone = tested == 0 && inside[0] && !between;
-        square[tested] = dot(d[tested], d[tested]);
-        least = fmin(least, square[tested]);
+    bool inside[4], between;
+    quad way[3];
+    quad_mask in;
+    const int first = sector(&f, x, &between);
+    on_triangles(&f, x, way, &in);
+    const int tested = in[first] && !between ? 1 : 4;
+    const quad squares = quad_dot(way, way);
+    for (int k = 0; k < tested; k++) {
+        const int t = (first + k) % 4;
+        for (int a = 0; a < 3; a++) d[k][a] = way[a][t];
+        square[k] = squares[t], inside[k] = in[t];
+        least = square[k] < least ? square[k] : least;
     }
     brunt_closest best = {.square = INFINITY};
     const double root = tested > 1 ? sqrt(least) + BRUNT_TIE * sqrt(s->face_area[face]) : INFINITY;
