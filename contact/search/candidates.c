@@ -6,6 +6,7 @@ static const double ASKEW = -0.3;     // ... or, where nothing opposed is within
 static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
 static const double MARGIN = 0.125;   // mean edges: facets so much further than the nearest are looked at closely, too
+static const double CLEAR = 1e-4;     // mean edges: distances of boxes that tell of those of the facets in them
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a eroded surface a place is still before it
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
@@ -101,6 +102,17 @@ typedef struct facet_search {
     two_nearest *all; // notes the two nearest of any direction, as far as `margin` beyond the nearest; may be NULL
 } facet_search;
 
+// Whether all that is in a box is further from x than the root of `square`, and so far that rounding does not matter.
+static inline bool beyond(const brunt_contact_surface *s, const double box[6], const double x[3], double square) {
+    const double clear = CLEAR * s->mean_edge;
+    double sum = 0;
+    for (int a = 0; a < 3; a++) {
+        const double below = box[a] - x[a], above = x[a] - box[3 + a], way = below > above ? below : above;
+        if (way > 0) sum += way * way;
+    }
+    return sum * (1 - 1e-6) > square && sum > clear * clear;
+}
+
 // The nearest facets in a cell of each body that is looked for. How many bodies. `membranes`: whether there are any;
 // the cells have their fronts, for both sides.
 static inline __attribute__((always_inline)) int find_nearest(const brunt_contact_surface *s,
@@ -131,6 +143,10 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
         bool faces = !normal || cosine > least || (membrane && -cosine > least);
         if ((!faces && !all) || !is_among(other, what.list, what.count)) continue;
         if (membranes && other == l->body && in_patch(l, face)) continue;
+        // What is further than two of any direction, and than the nearest of its body, changes neither.
+        if (face != guess && (!all || beyond(s, s->face_box[face], l->x, all->second)) &&
+            (!faces || (b < bodies && beyond(s, s->face_box[face], l->x, best[b].root * best[b].root))))
+            continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
         const bool behind = membrane && dot(at.normal, at.d) < 0;
