@@ -241,7 +241,7 @@ double brunt_block_solve(const brunt_constraint_set *p, block *b) {
     for (int e = 0; e < b->count; e++) {
         doubles out[3];
         transpose(b, e, J, out);
-        give(p, b, e, out[0], out[1], out[2], zero);
+        give(p, b, e, out[0], out[1], out[2], out[2]); // whatever the fourth is: beside zeros gcc 12 writes one by one
     }
     double greatest = 0;
     for (int l = 0; l < LANES; l++) greatest = changed[l] > greatest ? changed[l] : greatest;

@@ -10,7 +10,7 @@
 #include "contact/constraint/columns.h"
 #include "contact/constraint/release.h"
 
-enum { GRAIN = 128 };
+enum { GRAIN = 128, AHEAD = 40 }; // AHEAD: entries that are fetched before a node adds them up
 _Static_assert(GRAIN % BRUNT_DOUBLES == 0, "a chunk is whole blocks");
 static const double DIVERGES = 10; // times the correction of the first sweep is left
 
@@ -373,11 +373,14 @@ static void carry_on(double momentum, brunt_dof_node *dof_node, struct brunt_dof
 static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
+    const int32_t all = p->column_first[p->dof_node_count];
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         brunt_dof_node *dof_node = &p->dof_node[s];
         quad sum = {0};
-        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++)
+        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
+            if (q + AHEAD < all) __builtin_prefetch(p->given[p->column[q + AHEAD].entry]);
             sum += load_quad(p->given[p->column[q].entry]);
+        }
         for (int a = 0; a < 3; a++) {
             dof_node->impulse[a] += sum[a];
             dof_node->v[a] += sum[a] * dof_node->inverse[a];
