@@ -173,7 +173,7 @@ int brunt_barrier_set_step(brunt_barrier *b, const brunt_barrier_step *step, bru
     BRUNT_ASSERT(step->before || step->factor == 1);
     (void)error;
     b->step = *step;
-    b->extent.known = false;
+    b->extent.known = b->known = false;
     b->contacts.count = b->lagged.count = 0;
     b->pair_count = b->key_count = 0;
     return BRUNT_OK;

@@ -11,7 +11,7 @@ static void swept_box(const barrier_way *w, int32_t place, brunt_near_box *box) 
     double from[3], by[3];
     barrier_move(b, place, w->u, from), barrier_move(b, place, w->p, by);
     for (int k = 0; k < 3; k++) {
-        const double at = k < b->dim ? (x[k] - b->origin[k]) + from[k] : 0, to = at + by[k];
+        const double at = k < b->dim ? (x[k] - b->origin[k]) + from[k] : 0, to = at + w->part * by[k];
         box->low[k] = to < at ? to : at, box->high[k] = to > at ? to : at;
     }
 }
@@ -97,7 +97,7 @@ static bool plane_is_near(const barrier_way *w, int32_t point, const brunt_near_
     for (int k = 0; k < b->dim; k++) {
         const double n = plane->normal[k], corner = n > 0 ? box->low[k] : box->high[k];
         gap += n * (corner - (plane->origin[k] - b->origin[k]) - from[k]);
-        comes += n * by[k];
+        comes += n * w->part * by[k];
     }
     return !(gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->margin);
 }
@@ -233,9 +233,10 @@ static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
     return BRUNT_OK;
 }
 
-int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
+int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, double part,
+                      brunt_error *error) {
     bool bad[BRUNT_THREAD_LIMIT] = {false};
-    barrier_way work = {.b = b, .u = u, .p = p, .bad = bad};
+    barrier_way work = {.b = b, .u = u, .p = p, .part = part, .bad = bad};
     const size_t points = (size_t)barrier_points(b) + 1;
     if (BRUNT_CAPACITY(b->point_box, points, 0, "boxes about points", error) ||
         BRUNT_CAPACITY(b->far, (size_t)b->step.particles.count + 1, 0, "points in contact", error) ||
@@ -247,6 +248,6 @@ int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u,
     if (code) return code;
     if (make_lists(&work, team, error) || make_tasks(b, team->threads, error) || barrier_find_pairs(b, error))
         return BRUNT_FAILED;
-    b->swept = p != NULL;
+    b->swept = p != NULL, b->known = true, b->part = part;
     return BRUNT_OK;
 }

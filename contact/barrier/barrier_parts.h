@@ -148,6 +148,8 @@ struct brunt_barrier {
     size_t point_box_capacity, facet_box_capacity, edge_box_capacity, far_capacity, asked_capacity;
     brunt_near_cells facet_cells, edge_cells;
     brunt_near_list facets, planes, edges; // of points, points, edges
+    bool known;                            // they are of this step
+    double part;                           // of a way that they are found along, no step goes farther
     bool swept, stale;                     // found along a way; `sets` are not those of `contacts`
     brunt_error unsaid;                    // memory ran out where no function could say so: the next look does
     int32_t *task;                         // points that are near something; edges as -1 - edge
@@ -207,13 +209,16 @@ double barrier_plane_offset(const brunt_barrier *b, const brunt_barrier_plane *p
 typedef struct barrier_way {
     brunt_barrier *b;
     const double *u, *p;
+    double part;     // of p that is looked along
     double reach[3]; // [m] that no material point goes farther, from the start of the step
     double margin;   // [m] more than the distances: rounding of boxes
     bool *bad;       // of each worker: something is not a number
 } barrier_way;
 // Takes `reach`; how large the numbers are that boxes of material points are differences of.
 double barrier_take_reach(barrier_way *way, const brunt_team *team);
-int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error);
+// What may come near from u to u + part p; p NULL: what is near at u.
+int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, double part,
+                      brunt_error *error);
 
 // --- contacts (barrier_contacts.c)
 // The contacts of a task at u, in the order of what it is near, handed to `take`.

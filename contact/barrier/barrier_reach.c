@@ -44,7 +44,8 @@ static void measure_nodes(void *context, int64_t begin, int64_t end, int worker)
     found f = w->found[worker];
     for (int64_t n = low + begin; n < low + end; n++)
         for (int k = 0; k < dim; k++) {
-            const double move = (way->u ? fabs(way->u[n * dim + k]) : 0) + (way->p ? fabs(way->p[n * dim + k]) : 0);
+            const double move =
+                (way->u ? fabs(way->u[n * dim + k]) : 0) + (way->p ? way->part * fabs(way->p[n * dim + k]) : 0);
             if (move > f.move[k]) f.move[k] = move;
             f.finite += move - move;
         }

@@ -31,7 +31,9 @@ static int list_candidates(brunt_barrier *b, brunt_error *error) {
 
 static int term_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     brunt_barrier *b = self;
-    if (brunt_hand_on(error, &b->unsaid) || barrier_find_near(b, team, u, p, error)) return BRUNT_FAILED;
+    // No step goes farther than what was near last lets it, which spares what lies along the rest of a long one.
+    const double part = p && b->known ? barrier_limit(b, team, u, p, 1) : 1;
+    if (brunt_hand_on(error, &b->unsaid) || barrier_find_near(b, team, u, p, part, error)) return BRUNT_FAILED;
     b->contacts.count = b->sets.count = 0;
     b->stale = true;
     return p ? BRUNT_OK : barrier_list_contacts(b, team, u, &b->contacts, error);
@@ -106,7 +108,8 @@ static void term_hessian(void *self, const brunt_team *team, const double *u, bo
 }
 
 static double term_limit(void *self, const brunt_team *team, const double *u, const double *p, double largest) {
-    return barrier_limit(self, team, u, p, largest);
+    const brunt_barrier *b = self;
+    return barrier_limit(b, team, u, p, fmin(largest, b->part));
 }
 
 brunt_term brunt_barrier_term(brunt_barrier *barrier) {
@@ -142,7 +145,7 @@ static int list_rubbing(brunt_barrier *b, const brunt_team *team, const double *
 }
 
 int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
-    if (barrier_find_near(b, team, u, NULL, error) || list_rubbing(b, team, u, error)) return BRUNT_FAILED;
+    if (barrier_find_near(b, team, u, NULL, 1, error) || list_rubbing(b, team, u, error)) return BRUNT_FAILED;
     return barrier_make_sets(b, &b->lagged, &b->lagged_sets, error);
 }
 

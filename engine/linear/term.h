@@ -47,8 +47,8 @@ typedef struct brunt_response {
 // Functions that a term has not are NULL. `u` and `p` are of all unknowns, read by the term's own nodes.
 typedef struct brunt_term_ops {
     const char *name; // in messages: "barrier"
-    // Finds what the term depends on at u + t p for all 0 <= t <= 1 (p NULL: at u), before the others are asked about
-    // places between: candidates of contact. BRUNT_OK, or BRUNT_FAILED with the reason.
+    // Finds what the term depends on at u + t p for all 0 <= t <= 1 that `limit` lets (p NULL: at u), before the others
+    // are asked about places between: candidates of contact. BRUNT_OK, or BRUNT_FAILED with the reason.
     int (*look)(void *term, const brunt_team *team, const double *u, const double *p, brunt_error *error);
     brunt_energy_sum (*energy)(void *term, const brunt_team *team, const double *u);
     // Adds the gradient at u to g [J/m].

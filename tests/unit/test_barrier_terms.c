@@ -557,7 +557,8 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------------------- search
 
-// Candidates of a short way find what those of a way so long that all meet all find.
+// Candidates of a short way find what those of a way so long that all meet all find. Where something is known to be
+// near, those of a way are of the part that it may be gone: the same as far as that, and the same limit.
 START_TEST(candidates_are_all_there_is) {
     for (int which = 0; which < 7; which++) {
         barrier_case *c = make_case(which);
@@ -570,16 +571,22 @@ START_TEST(candidates_are_all_there_is) {
             for (int i = 0; i < c->nodes * c->dim; i++) all[i] = i % 2 ? 50 : -50;
             const double t = n / 29.0;
             for (int i = 0; i < c->nodes * c->dim; i++) at[i] = u[i] + t * p[i];
-            case_look(c, u, p);
-            const double along = case_energy(c, term, at);
+            case_step(c), case_look(c, u, p);
+            const double along = case_energy(c, term, at), limit = case_limit(c, u, p, 1);
             case_look(c, at, NULL);
             const double here = case_energy(c, term, at);
             draw_unknowns(c, all, 100, 7);
-            case_look(c, at, all);
+            case_step(c), case_look(c, at, all);
             const double every = case_energy(c, term, at);
             ck_assert_msg(along == every && here == every, "case %d: %.17g and %.17g, of all %.17g", which, along, here,
                           every);
             touched += every > 0;
+            case_look(c, u, NULL), case_look(c, u, p);
+            ck_assert_double_eq(case_limit(c, u, p, 1), limit);
+            for (int i = 0; i < c->nodes * c->dim; i++) at[i] = u[i] + t * limit * p[i];
+            const double within = case_energy(c, term, at);
+            case_look(c, at, NULL);
+            ck_assert_double_eq(within, case_energy(c, term, at));
         }
         ck_assert_int_ge(touched, 15);
         free(u), free(p), free(at), free(all), case_end(c);
