@@ -29,6 +29,7 @@ typedef struct brunt_barrier_mesh {
     // quadrilateral is the two triangles about its shorter diagonal in the reference configuration (the one with the
     // smallest vertex where both are as long).
     const int32_t (*facet)[4];
+    bool round; // 2D, where all that meets may overlap: rims are curves, with points between vertices (barrier_arcs.c)
 } brunt_barrier_mesh;
 
 // Two bodies that meet; a body meets itself by a pair (a, a).
@@ -176,7 +177,7 @@ typedef struct brunt_barrier_report {
     double least_gap;    // [m] of all that is near; INFINITY: nothing is
     double least_part;   // of its distance dhat; of what may overlap, of its reach: 1 where it begins to push
     int32_t body, other; // that are that near; other -1: a plane
-    int32_t point;       // vertex (below vertex_count) or material point (vertex_count and on); -1: two edges
+    int32_t point;       // vertex (below vertex_count), point of a round rim or material point (behind); -1: two edges
     int32_t plane;       // -1: none
     double position[3];  // [m] of the point, or on the edge
     bool overlaps;       // what is that near may overlap

@@ -47,19 +47,27 @@ static bool in_range(const brunt_barrier *b, int32_t law, double d) {
     return d - pair->offset < fmax(pair->distance, 2 * pair->reach);
 }
 
+// The part of a facet that a point is nearest to, and its distance.
+static int region_of(const brunt_barrier *b, int32_t point, int32_t facet, const double *u, double *d) {
+    static const double here[3] = {0};
+    const barrier_arc *arc = barrier_arc_of(b, facet);
+    double x[BRUNT_CUBIC_PLACES][3], s;
+    const double(*at)[3] = (const double(*)[3])x;
+    barrier_relative(b, u, point, arc ? arc->place : b->facet[facet], arc ? arc->curve.places : b->dim, x);
+    if (arc) return brunt_closest_of_cubic(here, at, &arc->curve, &s, d);
+    return b->dim == 3 ? brunt_closest_of_triangle(here, at, d) : brunt_closest_of_edge(here, x[0], x[1], d);
+}
+
 // The facets within reach, each at its nearest feature.
 static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
-    static const double here[3] = {0};
     r->feature_count = r->edge_count = r->vertex_count = 0;
     const int32_t body = barrier_body_of(b, point);
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]];
         barrier_feature of = {.times = 0};
-        double x[3][3], d;
+        double d;
         int32_t v[3];
-        barrier_relative(b, u, point, f, b->dim, x);
-        const int region = b->dim == 3 ? brunt_closest_of_triangle(here, (const double(*)[3])x, &d)
-                                       : brunt_closest_of_edge(here, x[0], x[1], &d);
+        const int region = region_of(b, point, b->facets.item[i], u, &d);
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
         if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);
@@ -110,6 +118,9 @@ barrier_contact barrier_contact_with(const brunt_barrier *b, int32_t point, cons
     static const double here[3] = {0};
     barrier_contact c = {.place = {point, f->vertex[0], f->vertex[1], f->vertex[2]}, .law = f->law, .side = f->side};
     c.offset = barrier_pair_of(b, f->law)->offset;
+    c.weight = f->times * f->share * barrier_area_of(b, point);
+    const int32_t facet = barrier_arc_met(b, f);
+    if (facet >= 0) return barrier_meet_arc(b, f, facet, u, &c), c;
     double x[3][3];
     int count = 1;
     while (count < 3 && f->vertex[count] >= 0) count++;
@@ -121,7 +132,6 @@ barrier_contact barrier_contact_with(const brunt_barrier *b, int32_t point, cons
     else
         brunt_closest_plane(here, (const double(*)[3])x, &c.at);
     if (barrier_pair_of(b, f->law)->reach > 0) barrier_sign(b, point, f, u, &c.at);
-    c.weight = f->times * f->share * barrier_area_of(b, point);
     return c;
 }
 

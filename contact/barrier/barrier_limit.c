@@ -132,13 +132,34 @@ static void apart(const brunt_barrier *b, int32_t law, moving_pair *m) {
     m->distance = pair->distance, m->offset = pair->offset, m->reach = pair->reach;
 }
 
+// Of a curve, which may be overlapped: no place of it moves farther than those that hold it between them.
+static double arc_limit(const limit_work *w, int32_t point, const barrier_arc *arc, const brunt_barrier_pair *pair,
+                        double largest) {
+    static const double here[3] = {0};
+    double x[BRUNT_CUBIC_PLACES][3], v[BRUNT_CUBIC_PLACES][3], hull[4][3], own[3], s, d, way = 0;
+    barrier_relative(w->b, w->u, point, arc->place, arc->curve.places, x);
+    brunt_closest_of_cubic(here, (const double(*)[3])x, &arc->curve, &s, &d);
+    barrier_move(w->b, point, w->p, own);
+    for (int i = 0; i < BRUNT_CUBIC_PLACES; i++) // of more than there are vertex 0, which has no weight
+        barrier_move(w->b, arc->place[i], w->p, v[i]);
+    barrier_arc_hull(arc, (const double(*)[3])v, hull);
+    for (int i = 0; i < 4; i++) way = fmax(way, hypot(hull[i][0] - own[0], hull[i][1] - own[1]));
+    return barrier_overlap_limit(d - pair->offset, pair->reach, way, largest);
+}
+
 static double point_limit(const limit_work *w, int32_t point, double largest) {
     const brunt_barrier *b = w->b;
     int8_t side;
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]], place[4] = {point, f[0], f[1], f[2]};
+        const int32_t law = barrier_law_between(b, barrier_body_of(b, point), b->body[f[0]], &side);
+        const barrier_arc *arc = barrier_arc_of(b, b->facets.item[i]);
+        if (arc) {
+            largest = arc_limit(w, point, arc, barrier_pair_of(b, law), largest);
+            continue;
+        }
         moving_pair m = pair_of(w, place, 1, 1 + b->dim);
-        apart(b, barrier_law_between(b, barrier_body_of(b, point), b->body[f[0]], &side), &m);
+        apart(b, law, &m);
         largest = pair_limit(&m, largest);
     }
     for (int64_t i = b->planes.first[point]; i < b->planes.first[point + 1]; i++)

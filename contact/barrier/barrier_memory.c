@@ -1,10 +1,10 @@
 // What friction keeps from one load step to the next: how far surfaces have given along each other, without slipping.
-// Kept by the vertices of meshes, for each body or plane that one touches.
+// Kept by the points of surfaces of meshes, for each body or plane that one touches.
 #include "contact/barrier/barrier_parts.h"
 
 int brunt_barrier_keep_slips(brunt_barrier *b, brunt_error *error) {
-    const size_t slots = (size_t)b->vertex_count * BARRIER_KEPT + 1;
-    if (BRUNT_CAPACITY(b->kept, slots, 0, "slips of vertices", error)) return BRUNT_FAILED;
+    const size_t slots = (size_t)barrier_surface_points(b) * BARRIER_KEPT + 1;
+    if (BRUNT_CAPACITY(b->kept, slots, 0, "slips of surfaces", error)) return BRUNT_FAILED;
     for (size_t i = 0; i < slots; i++) b->kept[i] = (barrier_kept){.other = BRUNT_NONE};
     b->keeps = true;
     return BRUNT_OK;
@@ -25,7 +25,7 @@ static void turn(const double n[3], double slip[3]) {
 
 void barrier_kept_slip(const brunt_barrier *b, const barrier_contact *c, double slip[3]) {
     slip[0] = slip[1] = slip[2] = 0;
-    if (!b->keeps || c->threshold > 0 || c->place[0] >= b->vertex_count) return;
+    if (!b->keeps || c->threshold > 0 || c->place[0] >= barrier_surface_points(b)) return;
     const barrier_kept *kept = &b->kept[(int64_t)c->place[0] * BARRIER_KEPT];
     const int32_t other = other_of(b, c);
     for (int s = 0; s < BARRIER_KEPT; s++) {
@@ -63,12 +63,12 @@ static void keep_one(brunt_barrier *b, const barrier_contact *c, const double y[
 int brunt_barrier_keep(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
     if (!b->keeps) return BRUNT_OK;
     if (brunt_barrier_lag(b, team, u, error)) return BRUNT_FAILED;
-    for (int64_t i = 0; i < (int64_t)b->vertex_count * BARRIER_KEPT; i++)
+    for (int64_t i = 0; i < (int64_t)barrier_surface_points(b) * BARRIER_KEPT; i++)
         b->kept[i] = (barrier_kept){.other = BRUNT_NONE};
     for (int64_t i = 0; i < b->lagged.count; i++) {
         const barrier_contact *c = &b->lagged.contact[i];
         const barrier_law law = barrier_law_of(b, c->law);
-        if (c->threshold > 0 || c->place[0] >= b->vertex_count) continue;
+        if (c->threshold > 0 || c->place[0] >= barrier_surface_points(b)) continue;
         keep_one(b, c, b->rub[i].slip, law.friction == INFINITY ? INFINITY : b->step.dt * law.slip_speed);
     }
     return BRUNT_OK;
@@ -77,7 +77,7 @@ int brunt_barrier_keep(brunt_barrier *b, const brunt_team *team, const double *u
 // ------------------------------------------------------------------------------------------ of the state
 
 int64_t brunt_barrier_kept_count(const brunt_barrier *b) {
-    return b && b->keeps ? (int64_t)b->vertex_count * BARRIER_KEPT * 5 : 0;
+    return b && b->keeps ? (int64_t)barrier_surface_points(b) * BARRIER_KEPT * 5 : 0;
 }
 
 void brunt_barrier_kept_get(const brunt_barrier *b, double *out) {

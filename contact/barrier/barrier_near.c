@@ -28,7 +28,7 @@ static void point_box(const barrier_way *w, int32_t point, int worker) {
     if (!finite_box(box)) w->bad[worker] = true;
 }
 
-static void vertex_boxes(void *context, int64_t begin, int64_t end, int worker) {
+static void surface_boxes(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t i = begin; i < end; i++) point_box(context, (int32_t)i, worker);
 }
 
@@ -44,12 +44,34 @@ static void hull_box(const brunt_near_box *vertex, const int32_t *v, int count, 
     for (int k = 0; k < 3; k++) box->low[k] -= more, box->high[k] += more;
 }
 
+// A box about a facet becomes one about its curve as well, wherever that is on its way.
+static void hold_arc(const barrier_way *w, int32_t facet, brunt_near_box *box) {
+    const brunt_barrier *b = w->b;
+    const barrier_arc *arc = &b->arc[facet];
+    const double more = b->source.range + w->margin;
+    double at[BRUNT_CUBIC_PLACES][3], by[BRUNT_CUBIC_PLACES][3], hull[4][3], way[4][3];
+    for (int i = 0; i < arc->curve.places; i++) {
+        const double *x = barrier_start(b, arc->place[i]);
+        barrier_move(b, arc->place[i], w->u, at[i]), barrier_move(b, arc->place[i], w->p, by[i]);
+        for (int k = 0; k < 2; k++) at[i][k] += x[k] - b->origin[k];
+    }
+    barrier_arc_hull(arc, (const double(*)[3])at, hull), barrier_arc_hull(arc, (const double(*)[3])by, way);
+    for (int p = 1; p < 3; p++) // the others are the ends
+        for (int k = 0; k < 2; k++) {
+            const double to = hull[p][k] + w->part * way[p][k];
+            box->low[k] = fmin(box->low[k], fmin(hull[p][k], to) - more);
+            box->high[k] = fmax(box->high[k], fmax(hull[p][k], to) + more);
+        }
+}
+
 static void facet_boxes(void *context, int64_t begin, int64_t end, int worker) {
     const barrier_way *w = context;
     brunt_barrier *b = w->b;
     (void)worker;
-    for (int64_t i = begin; i < end; i++)
+    for (int64_t i = begin; i < end; i++) {
         hull_box(b->point_box, b->facet[i], b->dim, b->source.range + w->margin, &b->facet_box[i]);
+        if (barrier_arc_of(b, (int32_t)i)) hold_arc(w, (int32_t)i, &b->facet_box[i]);
+    }
 }
 
 static void edge_boxes(void *context, int64_t begin, int64_t end, int worker) {
@@ -60,10 +82,19 @@ static void edge_boxes(void *context, int64_t begin, int64_t end, int worker) {
         hull_box(b->point_box, b->edge[i], 2, b->source.range + w->margin, &b->edge_box[i]);
 }
 
+// Facets that a point belongs to; one on a round rim to its own, and to those beside that.
+static bool belongs_to(const brunt_barrier *b, int32_t point, int32_t facet) {
+    const int32_t *f = b->facet[facet];
+    const barrier_rim *rim = barrier_rim_of(b, point);
+    const int32_t *own = rim ? b->facet[rim->facet] : NULL;
+    if (own) return f[0] == own[0] || f[0] == own[1] || f[1] == own[0] || f[1] == own[1];
+    return f[0] == point || f[1] == point || f[2] == point;
+}
+
 static bool facet_wanted(const void *context, int32_t point, int32_t facet) {
     const brunt_barrier *b = ((const barrier_way *)context)->b;
     const int32_t *f = b->facet[facet];
-    if (f[0] == point || f[1] == point || f[2] == point) return false;
+    if (belongs_to(b, point, facet)) return false;
     return barrier_bodies_meet(b, barrier_body_of(b, point), b->body[f[0]], false);
 }
 
@@ -132,7 +163,7 @@ static void particle_boxes(void *context, int64_t begin, int64_t end, int worker
     const barrier_way *w = context;
     brunt_barrier *b = w->b;
     for (int64_t i = begin; i < end; i++) {
-        const int32_t point = b->vertex_count + (int32_t)i;
+        const int32_t point = barrier_surface_points(b) + (int32_t)i;
         const double *x = b->step.particles.x[i];
         brunt_near_box box = {{0}, {0}};
         b->far[i] = is_beyond(w, x);
@@ -146,12 +177,12 @@ static void particle_boxes(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
-// Vertices, and material points that are not far.
+// Points of surfaces, and material points that are not far.
 static void list_asked(brunt_barrier *b) {
     b->asked_count = 0;
-    for (int32_t i = 0; i < b->vertex_count; i++) b->asked[b->asked_count++] = i;
+    for (int32_t i = 0; i < barrier_surface_points(b); i++) b->asked[b->asked_count++] = i;
     for (int32_t i = 0; i < b->step.particles.count; i++)
-        if (!b->far[i]) b->asked[b->asked_count++] = b->vertex_count + i;
+        if (!b->far[i]) b->asked[b->asked_count++] = barrier_surface_points(b) + i;
 }
 
 // How large numbers are that boxes of vertices are differences of.
@@ -175,7 +206,7 @@ static int check_boxes(const barrier_way *w, brunt_error *error) {
 static int make_boxes(barrier_way *w, const brunt_team *team, brunt_error *error) {
     brunt_barrier *b = w->b;
     for (int k = 0; k < 3; k++) b->origin[k] = barrier_points(b) ? barrier_start(b, 0)[k] : 0;
-    brunt_parallel(team->threads, b->vertex_count, BARRIER_GRAIN, vertex_boxes, w, team->timer);
+    brunt_parallel(team->threads, barrier_surface_points(b), BARRIER_GRAIN, surface_boxes, w, team->timer);
     if (check_boxes(w, error)) return BRUNT_FAILED;
     w->margin = ROUNDING * fmax(size_of_vertices(b), barrier_take_reach(w, team));
     brunt_parallel(team->threads, b->facet_count, BARRIER_GRAIN, facet_boxes, w, team->timer);

@@ -1,5 +1,5 @@
-// Private to the barrier: what it is made of. Points are vertices, then material points; places are points, then
-// planes.
+// Private to the barrier: what it is made of. Points are vertices, then those on round rims, then material points;
+// places are points, then planes.
 #pragma once
 
 #include "base/array.h"
@@ -15,7 +15,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { BARRIER_DOFS = 3 * BRUNT_CLOSEST_PLACES, BARRIER_GRAIN = 64, BARRIER_TASK_GRAIN = 16 };
+// Of four places in three dimensions, or of five in two.
+enum { BARRIER_DOFS = 12, BARRIER_GRAIN = 64, BARRIER_TASK_GRAIN = 16 };
 
 // Of a pair or plane: what a contact needs to know.
 typedef struct barrier_law {
@@ -102,6 +103,20 @@ typedef struct barrier_found {
     int worker;
 } barrier_found;
 
+// The curve of an edge (barrier_arcs.c): of a straight one the two ends alone.
+typedef struct barrier_arc {
+    brunt_cubic curve;
+    int32_t place[BRUNT_CUBIC_PLACES]; // vertices: the ends as those of the facet, then what is beyond them
+} barrier_arc;
+
+// A point on a round rim, between the ends of a facet.
+enum { BARRIER_RIM_POINTS = 3 };
+typedef struct barrier_rim {
+    int32_t facet, node[BRUNT_CUBIC_PLACES]; // block nodes of the places of its curve
+    double weight[BRUNT_CUBIC_PLACES], area; // [m]
+    double x[3];                             // [m] at the start of the step
+} barrier_rim;
+
 typedef struct barrier_sets {
     int64_t *first, count;
     int32_t *node;
@@ -131,6 +146,13 @@ struct brunt_barrier {
     double *vertex_area, *edge_area, *edge_length2; // [m^2] (2D [m]), [m^2], [m^2]
     size_t facet_capacity, turned_capacity, body_capacity, edge_capacity, vertex_area_capacity, edge_area_capacity,
         edge_length2_capacity;
+    // Of round rims.
+    bool round;
+    barrier_arc *arc; // of facets
+    int32_t *joint;   // of vertices: a facet whose curve goes on there into that of another; BRUNT_NONE: none
+    barrier_rim *rim; // BARRIER_RIM_POINTS of each facet
+    int32_t rim_count;
+    size_t arc_capacity, joint_capacity, rim_capacity;
     brunt_barrier_pair_source source;
     // Pairs that were near each other in this step, as they were found, and where each stands, by its bodies.
     brunt_barrier_pair *pair;
@@ -176,7 +198,14 @@ struct brunt_barrier {
 };
 
 // --- places (barrier_place.c)
-static inline int32_t barrier_points(const brunt_barrier *b) { return b->vertex_count + b->step.particles.count; }
+static inline int32_t barrier_surface_points(const brunt_barrier *b) { return b->vertex_count + b->rim_count; }
+static inline int32_t barrier_points(const brunt_barrier *b) {
+    return barrier_surface_points(b) + b->step.particles.count;
+}
+// NULL: not a point on a round rim.
+static inline const barrier_rim *barrier_rim_of(const brunt_barrier *b, int32_t place) {
+    return place >= b->vertex_count && place < barrier_surface_points(b) ? &b->rim[place - b->vertex_count] : NULL;
+}
 static inline int barrier_plane_of(const brunt_barrier *b, int32_t place) { return place - barrier_points(b); }
 int32_t barrier_body_of(const brunt_barrier *b, int32_t point);
 const double *barrier_start(const brunt_barrier *b, int32_t place);
@@ -230,6 +259,21 @@ barrier_contact barrier_contact_with(const brunt_barrier *b, int32_t point, cons
 int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list,
                           brunt_error *error);
 brunt_energy_sum barrier_sum_energy(brunt_barrier *b, const brunt_team *team, const double *u);
+
+// --- round rims (barrier_arcs.c)
+// Makes curves and points of the mesh, whose vertices are at x. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int barrier_make_arcs(brunt_barrier *b, const double (*x)[3], brunt_error *error);
+// Where their points are as the step begins, and which block nodes move them.
+void barrier_place_rims(brunt_barrier *b);
+// The curve of a facet; NULL: it is straight.
+const barrier_arc *barrier_arc_of(const brunt_barrier *b, int32_t facet);
+// Four points that hold the curve between them, by the places x of its vertices; or their displacements, by those.
+void barrier_arc_hull(const barrier_arc *arc, const double (*x)[3], double hull[4][3]);
+// The facet whose curve a feature is of; BRUNT_NONE: none.
+int32_t barrier_arc_met(const brunt_barrier *b, const barrier_feature *f);
+// Places, gap and normal of a contact, whose first place is known, with the curve of a facet.
+void barrier_meet_arc(const brunt_barrier *b, const barrier_feature *f, int32_t facet, const double *u,
+                      barrier_contact *c);
 
 // --- surfaces that may overlap (barrier_overlap.c)
 // The gap of a contact with a feature gets its sign: inside the other body it is negative, and n points out of it.

@@ -1,25 +1,34 @@
 #include "contact/barrier/barrier_parts.h"
 
 int32_t barrier_body_of(const brunt_barrier *b, int32_t point) {
-    return point < b->vertex_count ? b->body[point] : b->step.particles.body[point - b->vertex_count];
+    const barrier_rim *rim = barrier_rim_of(b, point);
+    if (rim) return b->body[b->facet[rim->facet][0]];
+    return point < b->vertex_count ? b->body[point] : b->step.particles.body[point - barrier_surface_points(b)];
 }
 
 const double *barrier_start(const brunt_barrier *b, int32_t place) {
     if (place < b->vertex_count) return b->step.x[place];
-    const int32_t particle = place - b->vertex_count, plane = particle - b->step.particles.count;
+    const barrier_rim *rim = barrier_rim_of(b, place);
+    if (rim) return rim->x;
+    const int32_t particle = place - barrier_surface_points(b), plane = particle - b->step.particles.count;
     return plane < 0 ? b->step.particles.x[particle] : b->step.planes[plane].origin;
 }
 
 double barrier_area_of(const brunt_barrier *b, int32_t point) {
-    return point < b->vertex_count ? b->vertex_area[point] : b->step.particles.area[point - b->vertex_count];
+    const barrier_rim *rim = barrier_rim_of(b, point);
+    if (rim) return rim->area;
+    if (point >= b->vertex_count) return b->step.particles.area[point - barrier_surface_points(b)];
+    return b->round ? b->vertex_area[point] / (BARRIER_RIM_POINTS + 1) : b->vertex_area[point];
 }
 
 int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **node, const double **weight) {
     static const double one = 1;
     *weight = &one;
     if (place < b->vertex_count) return *node = &b->step.node[place], 1;
+    const barrier_rim *rim = barrier_rim_of(b, place);
+    if (rim) return *node = rim->node, *weight = rim->weight, b->arc[rim->facet].curve.places;
     const brunt_barrier_particles *p = &b->step.particles;
-    const int32_t particle = place - b->vertex_count, plane = particle - p->count;
+    const int32_t particle = place - barrier_surface_points(b), plane = particle - p->count;
     if (plane >= 0) return *node = &b->step.planes[plane].node, **node >= 0;
     *node = p->node + p->first[particle], *weight = p->weight + p->first[particle];
     return p->first[particle + 1] - p->first[particle];

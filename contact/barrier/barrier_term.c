@@ -15,7 +15,12 @@ static int list_candidates(brunt_barrier *b, brunt_error *error) {
     for (int32_t i = 0; i < b->facets.count; i++) {
         for (int64_t k = b->facets.first[i]; k < b->facets.first[i + 1]; k++) {
             const int32_t *f = b->facet[b->facets.item[k]];
-            list->contact[list->count++] = (barrier_contact){.place = {i, f[0], f[1], f[2]}, .at.places = 1 + b->dim};
+            const barrier_arc *arc = barrier_arc_of(b, b->facets.item[k]);
+            barrier_contact *c = &list->contact[list->count++];
+            *c = (barrier_contact){.place = {i, f[0], f[1], f[2]}, .at.places = 1 + b->dim};
+            if (!arc) continue;
+            c->at.places = 1 + arc->curve.places;
+            memcpy(c->place + 1, arc->place, sizeof arc->place);
         }
         for (int64_t k = b->planes.first[i]; k < b->planes.first[i + 1]; k++)
             list->contact[list->count++] =

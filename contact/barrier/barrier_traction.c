@@ -84,6 +84,19 @@ static brunt_traction *entry_of(tellers *t, int32_t v, int32_t other, int32_t pl
     return one;
 }
 
+// A force at a place: to a vertex, or from a point of a round rim to those that carry it; of material points and planes
+// nothing is told.
+static void add_to_vertices(tellers *t, int32_t place, int32_t other, int32_t plane, double force, bool friction) {
+    const brunt_barrier *b = t->rims.b;
+    const barrier_rim *rim = barrier_rim_of(b, place);
+    const barrier_arc *arc = rim ? &b->arc[rim->facet] : NULL;
+    for (int i = 0; i < (arc ? arc->curve.places : place < b->vertex_count); i++) {
+        const int32_t v = arc ? arc->place[i] : place;
+        brunt_traction *one = entry_of(t, v, other, plane);
+        *(friction ? &one->tangential : &one->normal) += (arc ? rim->weight[i] : 1) * force / b->vertex_area[v];
+    }
+}
+
 // Normal forces, or those of friction: to the vertices on both sides, by their weights. Along each rim friction has the
 // same sign, as both go by their own body to the left: a quarter turn from where it looks, which is -n of the first.
 static void add_contacts(tellers *t, const barrier_contacts *list, bool friction) {
@@ -95,18 +108,17 @@ static void add_contacts(tellers *t, const barrier_contacts *list, bool friction
         if (friction) barrier_slip_force(b, c, t->u, f);
         force = friction ? f[0] * c->at.n[1] - f[1] * c->at.n[0] : barrier_contact_force(b, c);
         for (int k = 0; k < c->at.places; k++) {
-            const int32_t v = c->place[k];
-            if (v >= b->vertex_count) continue; // of material points and planes nothing is told
             const int32_t other = plane ? BRUNT_NONE : barrier_body_of(b, c->place[k == 0 ? 1 : 0]);
-            brunt_traction *one = entry_of(t, v, other, plane ? c->law : BRUNT_NONE);
-            *(friction ? &one->tangential : &one->normal) += fabs(c->at.w[k]) * force / b->vertex_area[v];
+            const double part = (k == 0 ? c->at.w[k] : -c->at.w[k]) * force;
+            add_to_vertices(t, c->place[k], other, plane ? c->law : BRUNT_NONE, part, friction);
         }
     }
 }
 
 static int tell(tellers *t, brunt_error *error) {
     const brunt_barrier *b = t->rims.b;
-    const size_t most = (size_t)(b->contacts.count + b->lagged.count) * 3 + 1, n = (size_t)b->vertex_count + 1;
+    const size_t places = b->round ? 2 * BRUNT_CUBIC_PLACES : 3; // vertices of a contact, at most
+    const size_t most = (size_t)(b->contacts.count + b->lagged.count) * places + 1, n = (size_t)b->vertex_count + 1;
     if (make_rims(&t->rims, error) || BRUNT_NEW(t->last, n, "tractions", error) ||
         BRUNT_NEW(t->before, most, "tractions", error) || BRUNT_CAPACITY(t->to->traction, most, 0, "tractions", error))
         return BRUNT_FAILED;

@@ -15,6 +15,22 @@ static void validate_surface(const brunt_barrier *b) {
     for (int32_t v = 0; v < b->vertex_count; v++) BRUNT_ASSERT(b->body[v] >= 0 && b->vertex_area[v] >= 0);
 }
 
+// The weights of a point on a rim are those of a place.
+static void validate_rims(const brunt_barrier *b) {
+    BRUNT_ASSERT(b->rim_count == (b->round ? b->facet_count * BARRIER_RIM_POINTS : 0));
+    for (int32_t i = 0; i < b->rim_count; i++) {
+        const barrier_rim *rim = &b->rim[i];
+        const barrier_arc *arc = &b->arc[rim->facet];
+        double sum = 0;
+        for (int k = 0; k < arc->curve.places; k++) {
+            BRUNT_ASSERT(arc->place[k] >= 0 && arc->place[k] < b->vertex_count);
+            BRUNT_ASSERT(k > 1 || arc->place[k] == b->facet[rim->facet][k]);
+            sum += rim->weight[k];
+        }
+        BRUNT_ASSERT(fabs(sum - 1) < 1e-12 && rim->area > 0);
+    }
+}
+
 static void validate_pairs(const brunt_barrier *b) {
     for (int32_t i = 0; i < b->pair_count; i++) {
         const brunt_barrier_pair *p = &b->pair[i];
@@ -47,12 +63,13 @@ static void validate_sets(const barrier_sets *sets) {
 void brunt_barrier_validate(const brunt_barrier *b) {
     BRUNT_ASSERT(!b->unsaid.code);
     validate_surface(b);
+    validate_rims(b);
     validate_pairs(b);
     validate_contacts(b, &b->contacts);
     validate_contacts(b, &b->lagged);
     validate_sets(&b->sets);
     validate_sets(&b->lagged_sets);
-    for (int64_t i = 0; b->keeps && i < (int64_t)b->vertex_count * BARRIER_KEPT; i++)
+    for (int64_t i = 0; b->keeps && i < (int64_t)barrier_surface_points(b) * BARRIER_KEPT; i++)
         BRUNT_ASSERT(b->kept[i].force >= 0 && isfinite(b->kept[i].slip[0] + b->kept[i].slip[1] + b->kept[i].slip[2]));
     for (int64_t i = 0; i < b->lagged.count; i++) {
         const double *part = b->rub[i].part;

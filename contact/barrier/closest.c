@@ -220,6 +220,10 @@ static void duals(const brunt_closest *c, double inverse[2][2], double dual[2][3
 
 void brunt_closest_hessian(const brunt_closest *c, int dim, double outer, double inner, double *h) {
     double turn[3][3], inverse[2][2], dual[2][3];
+    if (c->curved) {
+        brunt_cubic_hessian(c, outer, inner, h);
+        return;
+    }
     turning(c, dim, turn);
     duals(c, inverse, dual);
     const int rows = c->places * dim;

@@ -260,7 +260,7 @@ static int walk_surfaces(brunt_implicit_contact *c, const brunt_bodies *bodies, 
     return BRUNT_OK;
 }
 
-static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, bool round, brunt_error *error) {
     int status = walk_surfaces(c, &world->bodies, error);
     if (status) return status;
     const size_t vertices = (size_t)c->vertex_count + 1;
@@ -275,7 +275,8 @@ static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, br
                                      .facet_count = c->facet_count,
                                      .rest = (const double(*)[3])c->rest,
                                      .body = c->body,
-                                     .facet = (const int32_t(*)[4])c->facet};
+                                     .facet = (const int32_t(*)[4])c->facet,
+                                     .round = round};
     return brunt_barrier_set_mesh(c->barrier, &mesh, error);
 }
 
@@ -302,7 +303,8 @@ static int make_barrier(brunt_implicit_contact *c, brunt_world *world, const bru
     take_lengths(c, &world->bodies, def);
     fill_planes(c, world, def);
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
-    if ((status = make_surfaces(c, world, error))) return status;
+    const bool round = def->contact.surface == BRUNT_SURFACE_ARCS;
+    if ((status = make_surfaces(c, world, round, error))) return status;
     if (def->scheme == BRUNT_STATIC && brunt_friction_in_load_steps(def) &&
         (status = brunt_barrier_keep_slips(c->barrier, error)))
         return status;

@@ -195,6 +195,7 @@ static int check_contact(const brunt_world_def *def, brunt_error *error) {
         brunt_check_choice("contact", ".form", (unsigned)contact->form, (unsigned)brunt_augury_form_count, error));
     BRUNT_TRY(brunt_check_choice("contact", ".touch", (unsigned)contact->touch, BRUNT_TOUCH_INELASTIC + 1, error));
     BRUNT_TRY(brunt_check_choice("contact", ".stop", (unsigned)contact->stop, BRUNT_STOP_SPRING + 1, error));
+    BRUNT_TRY(brunt_check_choice("contact", ".surface", (unsigned)contact->surface, BRUNT_SURFACE_ARCS + 1, error));
     BRUNT_TRY(brunt_check_choice("contact", ".transfer", (unsigned)contact->transfer, BRUNT_APIC + 1, error));
     if (!(contact->friction >= 0)) REFUSE("contact.friction: %g is negative", contact->friction);
     if (contact->iterations < -1) REFUSE("contact.iterations: %d is negative", contact->iterations);

@@ -296,6 +296,26 @@ static void look_at_methods(const brunt_world_def *def, refusals *r) {
     }
 }
 
+static bool keeps_apart(brunt_contact_method method) {
+    return brunt_contact_energy(method) && !brunt_contact_overlaps(method);
+}
+
+// Round rims have gaps with a sign; how far a barrier's step may go is known of facets alone.
+static void look_at_surface(const brunt_world_def *def, refusals *r) {
+    static const char wanted[] = "is by facets, and contact.surface: arcs by penalty alone";
+    const brunt_contact_def *contact = &def->contact;
+    if (contact->surface != BRUNT_SURFACE_ARCS) return;
+    set_owner(r, "contact");
+    if (def->dimension != 2) say(r, ".surface", "arcs are rims of two dimensions; in three facets is wanted");
+    if (!brunt_contact_overlaps(contact->method) && contact->method != BRUNT_CONTACT_NONE)
+        say(r, ".surface", "arcs: method %s of all other bodies %s", brunt_contact_word(contact->method), wanted);
+    for (int32_t q = 0; q < contact->pair_count; q++) {
+        set_owner(r, "contact.pairs[%d]", q);
+        if (keeps_apart(contact->pairs[q].method))
+            say(r, ".method", "%s %s", brunt_contact_word(contact->pairs[q].method), wanted);
+    }
+}
+
 void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse, void *context) {
     refusals r = {.refuse = refuse, .context = context, .owner = ""};
     const bool minimises = brunt_scheme_minimises(def->scheme);
@@ -306,4 +326,5 @@ void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse,
     look_at_boundaries(def, &r);
     look_at_methods(def, &r);
     if (minimises) look_at_contact(def, &r);
+    look_at_surface(def, &r);
 }

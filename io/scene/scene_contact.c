@@ -257,6 +257,7 @@ static void fill_keys(scene_reader *reader, scene_node *node) {
     contact->penalty = take(reader, node, "penalty", 0);
     contact->slip_speed = take(reader, node, "slip_speed", 0);
     contact->slip_length = take(reader, node, "slip_length", 0);
+    contact->surface = (brunt_surface_kind)(int)take(reader, node, "surface", contact->surface);
     contact->friction_iterations = (int)take(reader, node, "friction_iterations", 1);
 }
 

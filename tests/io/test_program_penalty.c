@@ -199,6 +199,7 @@ END_TEST
 
 // Mirrored, with the lower one moved in place of the upper, and not turned but by 0 degrees: the same forces.
 START_TEST(it_does_not_matter_which_body_moves) {
+    static const char *const surface[] = {"facets", "arcs"};
     double sheared[3];
     static const char *const how[] = {
         "",
@@ -222,7 +223,8 @@ START_TEST(it_does_not_matter_which_body_moves) {
         "measures: {shear: {history: contact.lower-upper.force_x}, press: {history: contact.lower-upper.force_y}}\n");
     for (int i = 0; i < 3; i++) {
         char words[900];
-        snprintf(words, sizeof words, "run sheared.yaml -t 1 -q -o out%d %s", i, how[i]);
+        snprintf(words, sizeof words, "run sheared.yaml -t 1 -q -o out%d --set contact.surface=%s %s", i, surface[_i],
+                 how[i]);
         small_expect(words, 0, NULL);
         char folder[16];
         snprintf(folder, sizeof folder, "out%d", i);
@@ -237,6 +239,96 @@ START_TEST(it_does_not_matter_which_body_moves) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------ round rims
+
+enum { SIDE = 3 };
+
+// Nine disks of 32 edges in a square lattice, whose rims are turned by parts of an edge, pressed by 30 N/m a row.
+static void put_lattice(const char *name, const char *contact) {
+    static const double turn[SIDE * SIDE] = {0, 0.5, 0.13, 0.71, 0.02, 0.5, 0.88, 0.37, 0.25};
+    const double cell = 10.03, wide = SIDE * cell;
+    char text[8000];
+    int n = snprintf(text, sizeof text,
+                     "brunt: 1\ndimension: 2\ntime: {scheme: static, steps: 2}\nnewton: {tolerance: 1e-9}\nmaterials:\n"
+                     "  rubber: {model: linear-elastic, density: 1000 kg/m^3, E: 2.75 MPa, nu: 0.3333333}\n"
+                     "  steel: {model: linear-elastic, density: 1000 kg/m^3, E: 200 MPa, nu: 0.3}\nbodies:\n");
+    for (int i = 0; i < SIDE * SIDE; i++)
+        n += snprintf(text + n, sizeof text - (size_t)n,
+                      "  g%d: {method: fem, element: tri3, size: 1 mm, material: rubber, crowd: {lattice: square, "
+                      "count: [1, 1], radius: 5 mm}, place: [{translate: [-5 mm, -5 mm]}, {rotate: {angle: %.9g deg}}, "
+                      "{translate: [%.9g mm, %.9g mm]}]}\n",
+                      i, turn[i] * 360 / 32, (i % SIDE + 0.5) * cell, (i / SIDE + 0.5) * cell);
+    n += snprintf(
+        text + n, sizeof text - (size_t)n,
+        "  top: {method: fem, element: quad4, size: 24 mm, material: steel, shape: {box: {min: [0.1 mm, %.9g "
+        "mm], max: [%.9g mm, %.9g mm]}}}\n"
+        "  right: {method: fem, element: quad4, size: 24 mm, material: steel, shape: {box: {min: [%.9g mm, 0.1 "
+        "mm], max: [%.9g mm, %.9g mm]}}}\n"
+        "boundaries:\n  - {plane: {point: [0, 0], normal: [1, 0]}, condition: separate}\n"
+        "  - {plane: {point: [0, 0], normal: [0, 1]}, condition: separate}\n"
+        "  - {body: top, group: ymax, traction: [0, %.9g Pa], table: [[0 s, 0], [1 s, 1]]}\n"
+        "  - {body: right, group: xmax, traction: [%.9g Pa, 0], table: [[0 s, 0], [1 s, 1]]}\n"
+        "  - {body: top, group: surface, fix: [x]}\n  - {body: right, group: surface, fix: [y]}\n"
+        "contact:\n  method: penalty\n  friction: 0.5\n%s  pairs:\n    - {between: [top, right], method: none}\n",
+        wide, wide + 0.1, wide + 5, wide, wide + 5, wide + 0.1, -30e3 * SIDE / wide, -30e3 * SIDE / wide, contact);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        n += snprintf(text + n, sizeof text - (size_t)n,
+                      "    - {between: [g%d.1, top], friction: 0}\n    - {between: [g%d.1, right], friction: 0}\n", i,
+                      i);
+    n += snprintf(text + n, sizeof text - (size_t)n, "output: {every: none, history: 0 s}\n");
+    ck_assert_int_lt(n, (int)sizeof text);
+    small_put(name, text);
+}
+
+// Every contact carries 30 N/m, as all disks are alike: with edges they are not, by how their rims are turned, and
+// forces differ by more than a tenth; round ones differ by what a mesh of that size gives at nodes and between them.
+START_TEST(round_rims_do_not_feel_how_they_are_turned) {
+    static const char *const surface[] = {"", "  surface: facets\n", "  surface: arcs\n"};
+    double spread[3];
+    char *hash[3];
+    for (int i = 0; i < 3; i++) {
+        put_lattice("lattice.yaml", surface[i]);
+        small_expect("run lattice.yaml -t 1 -q -o out --fresh", 0, NULL);
+        json_t *summary = summary_of("out"), *links = json_object_get(summary, "links");
+        ck_assert_double_eq_tol(number_of(links, "mean"), 30, 0.05);
+        ck_assert_double_lt(number_of(json_object_get(summary, "balance"), "body"), 1e-8);
+        ck_assert_double_lt(fabs(number_of(json_object_get(summary, "energy"), "error_relative")), 1e-8);
+        spread[i] = number_of(links, "sd") / 30, hash[i] = hash_of("out");
+        json_decref(summary);
+    }
+    ck_assert_str_eq(hash[0], hash[1]); // facets are the default
+    ck_assert_double_gt(spread[0], 0.1);
+    ck_assert_double_lt(spread[2], 0.05);
+    small_expect("run lattice.yaml -t 2 -q -o out --fresh", 0, NULL);
+    char *two = hash_of("out");
+    ck_assert_str_eq(two, hash[2]);
+    for (int i = 0; i < 3; i++) free(hash[i]);
+    free(two);
+}
+END_TEST
+
+START_TEST(round_rims_are_of_penalties_in_two_dimensions) {
+    put_blocks("blocks.yaml", 0.01, ", surface: arcs");
+    small_expect("check blocks.yaml", 0, NULL);
+    small_expect("check blocks.yaml --set contact.method=barrier", 65, "this belongs to method: penalty");
+    small_expect("check blocks.yaml --set contact.surface=round", 65, "Available: facets, arcs");
+    small_expect(
+        "check blocks.yaml --set 'contact={surface: arcs, pairs: [{between: [lower, upper], method: penalty}]}'", 65,
+        "arcs: method barrier of all other bodies is by facets");
+    put_blocks("blocks.yaml", 0.01, ", surface: arcs, pairs: [{between: [lower, upper], method: barrier}]");
+    small_expect("check blocks.yaml", 65, "blocks.yaml:16:");
+    small_expect("check blocks.yaml", 65, "barrier is by facets, and contact.surface: arcs by penalty alone");
+    small_put("deep.yaml",
+              "brunt: 1\ndimension: 3\ntime: {scheme: static, steps: 1}\n"
+              "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\n"
+              "bodies: {cube: {method: fem, element: hex8, size: 1 mm, material: m, shape: {box: {min: [0, 0, 1 mm], "
+              "max: [2 mm, 2 mm, 2 mm]}}}}\n"
+              "boundaries: [{name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}]\n"
+              "contact: {method: penalty, surface: arcs}\n");
+    small_expect("check deep.yaml", 65, "deep.yaml:7:37: contact.surface: arcs are rims of two dimensions");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_penalty");
     TCase *tests = tcase_create("program_penalty");
@@ -248,7 +340,9 @@ int main(void) {
     tcase_add_test(tests, points_lie_on_planes);
     tcase_add_test(tests, too_soft_is_said);
     tcase_add_test(tests, what_has_no_penalties_is_refused);
-    tcase_add_test(tests, it_does_not_matter_which_body_moves);
+    tcase_add_loop_test(tests, it_does_not_matter_which_body_moves, 0, 2);
+    tcase_add_test(tests, round_rims_do_not_feel_how_they_are_turned);
+    tcase_add_test(tests, round_rims_are_of_penalties_in_two_dimensions);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }

@@ -20,6 +20,7 @@ enum {
 
 typedef struct barrier_case {
     int dim;
+    bool round;
     int32_t vertices, facets, pairs, planes, particles, bodies, nodes;
     double x[CASE_VERTICES][3];
     int32_t body[CASE_VERTICES], node[CASE_VERTICES], facet[CASE_FACETS][4];
@@ -166,7 +167,7 @@ static inline bool case_meet(const void *self, int32_t a, int32_t b, brunt_barri
 // Ready for terms.
 static inline void case_ready(barrier_case *c) {
     const brunt_barrier_mesh mesh = {
-        c->dim, c->vertices, c->facets, (const double(*)[3])c->x, c->body, (const int32_t(*)[4])c->facet};
+        c->dim, c->vertices, c->facets, (const double(*)[3])c->x, c->body, (const int32_t(*)[4])c->facet, c->round};
     brunt_error error = {0};
     c->barrier = brunt_barrier_make(&error);
     ck_assert_msg(brunt_barrier_set_mesh(c->barrier, &mesh, &error) == BRUNT_OK, "%s", error.message);

@@ -62,9 +62,14 @@ START_TEST(pressure_is_by_depth) {
 END_TEST
 
 // A block with a notch and a wedge that fills it, a little more than it is wide: nodes within both its slopes and at
-// its foot, beside disks that overlap.
+// its foot, beside disks that overlap; from 4 on the same with round rims.
 static barrier_case *derivative_case(int which) {
     double place[2] = {0.1, 0.2};
+    if (which >= 4) {
+        barrier_case *c = derivative_case(which - 4);
+        c->round = true;
+        return c;
+    }
     if (which < 2) return two_disks(24, 32, 0.2, 0.06, which ? 0.01 : 0, place);
     static const double notched[][2] = {{-1, -1}, {1, -1}, {1, 0}, {0.4, 0.01}, {0, -0.5}, {-0.4, 0}, {-1, 0}};
     static const double wedge[][2] = {{-0.012, -0.52}, {0.01, -0.51},  {0.25, -0.2},
@@ -76,7 +81,7 @@ static barrier_case *derivative_case(int which) {
 }
 
 START_TEST(derivatives_are_those_of_differences) {
-    for (int which = 0; which < 4; which++) {
+    for (int which = 0; which < 8; which++) {
         barrier_case *c = derivative_case(which);
         double *u = case_unknowns(c);
         uint64_t state = 12;
@@ -97,7 +102,7 @@ END_TEST
 
 // What pushes and rubs adds up to nothing; of what pushes, moments as well. A rigid motion of both stores nothing.
 START_TEST(forces_are_opposite) {
-    for (int which = 0; which < 4; which++) {
+    for (int which = 0; which < 8; which++) {
         barrier_case *c = derivative_case(which);
         double *u = case_unknowns(c), *g = case_unknowns(c), *moved = case_unknowns(c);
         uint64_t state = 5;
@@ -137,10 +142,11 @@ END_TEST
 
 // The same as its mirror image, with the bodies the other way round, and with rims numbered from another vertex on.
 START_TEST(order_and_mirror_do_not_matter) {
-    double energy[4];
-    for (int which = 0; which < 4; which++) {
-        const int mirrored = which == 1, swapped = which == 2, from = which == 3 ? 5 : 0;
+    double energy[8];
+    for (int k = 0; k < 8; k++) {
+        const int which = k % 4, mirrored = which == 1, swapped = which == 2, from = which == 3 ? 5 : 0;
         barrier_case *of = derivative_case(0), *c = case_begin(2);
+        c->round = k >= 4;
         const double sign = mirrored ? -1 : 1;
         for (int body = 0; body < 2; body++) {
             double x[64][2];
@@ -155,11 +161,12 @@ START_TEST(order_and_mirror_do_not_matter) {
         case_ready(c);
         double *u = case_unknowns(c);
         case_look(c, u, NULL);
-        energy[which] = case_energy(c, brunt_barrier_term(c->barrier), u);
-        ck_assert_double_gt(energy[0], 0);
-        ck_assert_double_eq_tol(energy[which], energy[0], 1e-12 * energy[0]);
+        energy[k] = case_energy(c, brunt_barrier_term(c->barrier), u);
+        ck_assert_double_gt(energy[k], 0);
+        ck_assert_double_eq_tol(energy[k], energy[k - which], 1e-12 * energy[k]);
         free(u), case_end(c), case_end(of);
     }
+    ck_assert_double_gt(fabs(energy[4] - energy[0]), 0.01 * energy[0]);
 }
 END_TEST
 
@@ -220,9 +227,10 @@ START_TEST(sharp_corners_have_an_outside) {
 END_TEST
 
 // However far a way goes, no point gets deeper than it may be within one part of it; beyond that energies are infinite.
-START_TEST(steps_are_short_beside_the_reach) {
+static void check_steps(bool round) {
     double place[2] = {0, 0};
     barrier_case *c = two_disks(24, 32, 0.1, -0.03, 0, place);
+    c->round = round;
     case_ready(c);
     double *u = case_unknowns(c), *p = case_unknowns(c);
     const brunt_term term = brunt_barrier_term(c->barrier);
@@ -230,7 +238,7 @@ START_TEST(steps_are_short_beside_the_reach) {
         if (c->body[v] == 1) p[2 * c->node[v] + 1] = -1;
     case_look(c, u, p);
     const double part = case_limit(c, u, p, 1);
-    ck_assert_double_ge(part, REACH / 2);
+    ck_assert_double_ge(part, REACH / 2 * (1 - 1e-12));
     ck_assert_double_lt(part, 0.03 + REACH);
     for (double way = 0; way < 0.4; way += 0.01) { // from touching on ever more, then infinite
         for (int32_t i = 0; i < c->nodes * 2; i++) u[i] = way * p[i];
@@ -241,14 +249,16 @@ START_TEST(steps_are_short_beside_the_reach) {
     }
     free(u), free(p), case_end(c);
 }
+
+START_TEST(steps_are_short_beside_the_reach) { check_steps(false), check_steps(true); }
 END_TEST
 
-START_TEST(threads_give_the_same_bits) {
+static void check_threads(bool round) {
     double *first = NULL;
     for (int threads = 1; threads <= 5; threads++) {
         double place[2] = {3, -7};
         barrier_case *c = two_disks(96, 120, 0.02, 0.02, 0.004, place);
-        c->threads = threads;
+        c->threads = threads, c->round = round;
         case_ready(c);
         double *u = case_unknowns(c), *g = case_unknowns(c);
         case_look(c, u, NULL);
@@ -258,6 +268,159 @@ START_TEST(threads_give_the_same_bits) {
         free(u), free(g), case_end(c);
     }
     free(first);
+}
+
+START_TEST(threads_give_the_same_bits) { check_threads(false), check_threads(true); }
+END_TEST
+
+// ------------------------------------------------------------------------------------------------- round rims
+
+static const double PI = 3.14159265358979323846;
+
+// Of a disk of radius 1 about (0.3, -0.2): evenly spaced, or with edges up to 1.6 times as long as others.
+static void circle(int n, bool even, double (*x)[2]) {
+    for (int i = 0; i < n; i++) {
+        const double angle = 2 * PI * (i + (even ? 0.3 : 0.12 * sin(2 * i))) / n;
+        x[i][0] = 0.3 + cos(angle), x[i][1] = -0.2 + sin(angle);
+    }
+}
+
+// [m] The least gap that a body has beside a point of another, at a distance from the middle of the disk.
+static double gap_within(const double (*rim)[2], int n, bool round, double reach, double distance, double angle) {
+    barrier_case *c = case_begin(2);
+    uint64_t state = 1;
+    c->round = round;
+    case_polygon(c, 0, rim, n);
+    case_particle(c, (double[3]){0.3 + distance * cos(angle), -0.2 + distance * sin(angle), 0}, 0.01, 1, 1, &state);
+    overlapping(c, 0, 1, reach / 3)->reach = reach;
+    case_ready(c);
+    double *u = case_unknowns(c);
+    const double gap = case_report(c, u, NULL).least_gap;
+    free(u), case_end(c);
+    return gap;
+}
+
+static double gap_beside(const double (*rim)[2], int n, bool round, double distance, double angle) {
+    return gap_within(rim, n, round, REACH, distance, angle);
+}
+
+// Beside a disk of n edges the gap is that of a circle to 1.5e-3 (pi / n)^6, wherever it is asked for; edges alone are
+// up to 1 - cos(pi / n) inside of it.
+START_TEST(rims_of_disks_are_circles) {
+    static const int edges[] = {12, 24, 32, 64};
+    for (int k = 0; k < 8; k++) {
+        const int n = k == 1 ? 16 : edges[k / 2]; // 12 uneven ones have corners of more than 30 degrees
+        double x[64][2], off[2] = {0};
+        circle(n, k % 2 == 0, x);
+        const double longest = (k % 2 ? 1.25 : 1) * PI / n;
+        for (int i = 0; i < 60; i++)
+            for (int round = 0; round < 2; round++)
+                for (int side = -1; side < 2; side++) {
+                    const double gap = gap_beside((const double(*)[2])x, n, round, 1 + 0.01 * side, 0.1234 * i);
+                    if (round || gap < 0.02) off[round] = fmax(off[round], fabs(gap - 0.01 * side));
+                }
+        ck_assert_double_gt(off[0], 0.3 * (1 - cos(longest)));
+        ck_assert_double_lt(off[1], 1.5e-3 * pow(longest, 6) + 1e-14);
+    }
+    // Over the middle of an edge, which is much farther away than what pushes is looked for.
+    double x[12][2];
+    for (int i = 0; i < 12; i++)
+        x[i][0] = 0.3 + cos(2 * PI * (i + 0.5) / 12), x[i][1] = -0.2 + sin(2 * PI * (i + 0.5) / 12);
+    const double gap = gap_within((const double(*)[2])x, 12, true, 0.006, 0.998, 0);
+    ck_assert_double_eq_tol(gap, -0.002, 1e-6);
+}
+END_TEST
+
+// What a disk of 32 edges pushes with, as deep in a plane as its edges lie within its circle (half an edge to either
+// side touches then), or two of them in each other, however they are turned: least and greatest.
+static void turned_pushes(bool plane, bool round, double range[2]) {
+    const double deep = 1 - cos(PI / 32);
+    range[0] = INFINITY, range[1] = 0;
+    for (int turn = 0; turn < 25; turn++) {
+        barrier_case *c = case_begin(2);
+        double x[32][2];
+        c->round = round;
+        for (int body = 0; body < (plane ? 1 : 2); body++) {
+            for (int i = 0; i < 32; i++) {
+                const double angle = 2 * PI * (i + (body ? 0.2 * (turn % 5) : 0.04 * turn)) / 32;
+                x[i][0] = cos(angle), x[i][1] = (2 - deep) * body + sin(angle);
+            }
+            case_polygon(c, body, (const double(*)[2])x, 32);
+        }
+        if (plane)
+            c->plane[c->planes++] = (brunt_barrier_plane){.origin = {0, 1 - deep},
+                                                          .normal = {0, -1},
+                                                          .node = -1,
+                                                          .stiffness = K,
+                                                          .energy = brunt_penalty_at,
+                                                          .reach = REACH};
+        else
+            overlapping(c, 0, 1, 0);
+        case_ready(c);
+        double *u = case_unknowns(c);
+        brunt_barrier_force force;
+        case_report(c, u, &force);
+        const double push = fabs(force.normal[1]);
+        range[0] = fmin(range[0], push), range[1] = fmax(range[1], push);
+        free(u), case_end(c);
+    }
+}
+
+// The integral of k (deep - s^2 / 2) over a plane, of k (deep - s^2) between two disks.
+START_TEST(round_disks_push_as_they_do_however_they_are_turned) {
+    const double deep = 1 - cos(PI / 32), whole = K * 4 / 3.0 * deep * sqrt(deep);
+    for (int plane = 0; plane < 2; plane++) {
+        const double wanted = plane ? whole * sqrt(2) : whole;
+        double range[2];
+        turned_pushes(plane, false, range);
+        ck_assert_double_gt(range[1] - range[0], 0.5 * wanted);
+        turned_pushes(plane, true, range);
+        ck_assert_double_gt(range[0], 0.9 * wanted);
+        ck_assert_double_lt(range[1], 1.1 * wanted);
+    }
+}
+END_TEST
+
+// Straight sides and corners are what they are without: the same bits of gaps beside them. A polygon of 12 edges, whose
+// corners are of 30 degrees, is round, one of 11 is not; nor is a side beside others of less than half its length.
+START_TEST(sides_and_corners_stay) {
+    static const double box[][2] = {{-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {-0.2, 1}, {-1, 1}, {-1, 0.5}};
+    static const double long_side[][2] = {{-1, 0},      {-1.1, -0.02}, {-1.2, -0.06}, {0, -1},
+                                          {1.2, -0.06}, {1.1, -0.02},  {1, 0}};
+    double x[12][2];
+    for (int i = 0; i < 40; i++) {
+        const double angle = 2 * PI * i / 40;
+        ck_assert_double_eq(gap_beside(box, 8, true, 0.9, angle), gap_beside(box, 8, false, 0.9, angle));
+        for (int n = 11; n < 13; n++) {
+            circle(n, true, x);
+            const double gap[2] = {gap_beside((const double(*)[2])x, n, false, 0.99, angle),
+                                   gap_beside((const double(*)[2])x, n, true, 0.99, angle)};
+            ck_assert(n == 11 ? gap[0] == gap[1] : gap[1] < gap[0] + 1e-15);
+        }
+    }
+    for (int i = 0; i < 7; i++) // middles of the long side, -0.3 .. 0.3 of it
+        ck_assert_double_eq(gap_beside(long_side, 7, true, 0.21, PI / 2 + 0.2 * (i - 3)),
+                            gap_beside(long_side, 7, false, 0.21, PI / 2 + 0.2 * (i - 3)));
+}
+END_TEST
+
+// Nodes that have been pressed onto a line have a straight rim between them.
+START_TEST(a_rim_that_is_pressed_flat_is_flat) {
+    double x[32][2];
+    for (int i = 0; i < 9; i++) {
+        barrier_case *c = case_begin(2);
+        uint64_t state = 1;
+        circle(32, true, x);
+        case_polygon(c, 0, (const double(*)[2])x, 32);
+        case_particle(c, (double[3]){0.3 + 0.04 * (i - 4), 0.585, 0}, 0.01, 1, 1, &state);
+        overlapping(c, 0, 1, 0);
+        c->round = true;
+        case_ready(c);
+        double *u = case_unknowns(c);
+        for (int32_t v = 0; v < c->vertices; v++) u[2 * v + 1] = fmin(0.59 - c->x[v][1], 0);
+        ck_assert_double_eq_tol(case_report(c, u, NULL).least_gap, -0.005, 1e-15);
+        free(u), case_end(c);
+    }
 }
 END_TEST
 
@@ -279,6 +442,10 @@ int main(void) {
     tcase_add_test(tests, sharp_corners_have_an_outside);
     tcase_add_test(tests, steps_are_short_beside_the_reach);
     tcase_add_test(tests, threads_give_the_same_bits);
+    tcase_add_test(tests, rims_of_disks_are_circles);
+    tcase_add_test(tests, round_disks_push_as_they_do_however_they_are_turned);
+    tcase_add_test(tests, sides_and_corners_stay);
+    tcase_add_test(tests, a_rim_that_is_pressed_flat_is_flat);
     tcase_add_test(tests, stiffness_is_twenty_of_what_gives);
     suite_add_tcase(suite, tests);
     return suite_main(suite);

@@ -100,6 +100,10 @@ typedef enum brunt_touch_kind { BRUNT_TOUCH_ELASTIC, BRUNT_TOUCH_INELASTIC } bru
 // step, at zero gap, or by springs that the overlap pushes in. Of explicit steps.
 typedef enum brunt_stop_kind { BRUNT_STOP_HARD, BRUNT_STOP_SPRING } brunt_stop_kind;
 
+// What penalties see of a mesh: its facets and their nodes, or (2D) curves through the nodes of its rim, and points on
+// those between the nodes.
+typedef enum brunt_surface_kind { BRUNT_SURFACE_FACETS, BRUNT_SURFACE_ARCS } brunt_surface_kind;
+
 // Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
 typedef struct brunt_pair_def {
     char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
@@ -129,6 +133,7 @@ typedef struct brunt_contact_def {
                         // speed
     double slip_length; // [m] >= 0 of load steps: surfaces that rub give by up to that, then they slip; 0 (default) = a
                         // hundredth of the distance
+    brunt_surface_kind surface; // of penalties; default facets
     int friction_iterations; // >= 1: solutions of a step at most, each with the pressures of the one before; default 1
     bool allow_overlap;    // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
                            // behind a plane of condition separate; default false: an error
