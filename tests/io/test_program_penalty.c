@@ -174,6 +174,20 @@ START_TEST(too_soft_is_said) {
 }
 END_TEST
 
+// A cube above a floor, in three dimensions.
+static void put_cube(const char *contact) {
+    char text[800];
+    snprintf(text, sizeof text,
+             "brunt: 1\ndimension: 3\ntime: {scheme: static, steps: 1}\n"
+             "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\n"
+             "bodies: {cube: {method: fem, element: hex8, size: 1 mm, material: m, shape: {box: {min: [0, 0, 1 mm], "
+             "max: [2 mm, 2 mm, 2 mm]}}}}\n"
+             "boundaries: [{name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}]\n"
+             "contact: {%s}\n",
+             contact);
+    small_put("deep.yaml", text);
+}
+
 START_TEST(what_has_no_penalties_is_refused) {
     put_blocks("blocks.yaml", 0.01, "");
     small_expect("check blocks.yaml --set 'time={scheme: implicit, step: 1 ms, end: 1 s}'", 65,
@@ -186,13 +200,7 @@ START_TEST(what_has_no_penalties_is_refused) {
     small_expect("check blocks.yaml --set 'contact.stiffness=1 MPa'", 65, "this belongs to method: barrier");
     small_expect("check blocks.yaml --set 'contact.pairs=[{between: [lower, lower]}]'", 65,
                  "contact of a body with itself is by barrier");
-    small_put("deep.yaml",
-              "brunt: 1\ndimension: 3\ntime: {scheme: static, steps: 1}\n"
-              "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\n"
-              "bodies: {cube: {method: fem, element: hex8, size: 1 mm, material: m, shape: {box: {min: [0, 0, 1 mm], "
-              "max: [2 mm, 2 mm, 2 mm]}}}}\n"
-              "boundaries: [{name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}]\n"
-              "contact: {method: penalty}\n");
+    put_cube("method: penalty");
     small_expect("check deep.yaml", 65, "penalty: of two dimensions alone; in three barrier is wanted");
 }
 END_TEST
@@ -318,13 +326,7 @@ START_TEST(round_rims_are_of_penalties_in_two_dimensions) {
     put_blocks("blocks.yaml", 0.01, ", surface: arcs, pairs: [{between: [lower, upper], method: barrier}]");
     small_expect("check blocks.yaml", 65, "blocks.yaml:16:");
     small_expect("check blocks.yaml", 65, "barrier is by facets, and contact.surface: arcs by penalty alone");
-    small_put("deep.yaml",
-              "brunt: 1\ndimension: 3\ntime: {scheme: static, steps: 1}\n"
-              "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\n"
-              "bodies: {cube: {method: fem, element: hex8, size: 1 mm, material: m, shape: {box: {min: [0, 0, 1 mm], "
-              "max: [2 mm, 2 mm, 2 mm]}}}}\n"
-              "boundaries: [{name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}]\n"
-              "contact: {method: penalty, surface: arcs}\n");
+    put_cube("method: penalty, surface: arcs");
     small_expect("check deep.yaml", 65, "deep.yaml:7:37: contact.surface: arcs are rims of two dimensions");
 }
 END_TEST
