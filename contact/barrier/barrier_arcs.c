@@ -170,10 +170,10 @@ void barrier_meet_arc(const brunt_barrier *b, const barrier_feature *f, int32_t 
                       barrier_contact *c) {
     static const double here[3] = {0};
     const barrier_arc *arc = &b->arc[facet];
-    double x[BRUNT_CUBIC_PLACES][3], s = f->vertex[0] == b->facet[facet][1], d;
+    const double s = f->vertex[1] >= 0 ? f->along : f->vertex[0] == b->facet[facet][1];
+    double x[BRUNT_CUBIC_PLACES][3];
     const double(*at)[3] = (const double(*)[3])x;
     memcpy(c->place + 1, arc->place, (size_t)arc->curve.places * sizeof *arc->place);
     barrier_relative(b, u, c->place[0], arc->place, arc->curve.places, x);
-    if (f->vertex[1] >= 0) brunt_closest_of_cubic(here, at, &arc->curve, &s, &d);
     brunt_closest_cubic(here, at, &arc->curve, s, b->turned[facet] ? -1 : 1, &c->at);
 }

@@ -41,20 +41,26 @@ static void count_shared(const brunt_barrier *b, barrier_workspace *r, const int
         for (int i = 0; i < 3; i++) shared_at(r->edge, &r->edge_count, f[i == 2], f[i == 0 ? 1 : 2], of)->facets++;
 }
 
-// From inside, what may overlap is seen a way further than it may be deep.
-static bool in_range(const brunt_barrier *b, int32_t law, double d) {
+// [m] From inside, what may overlap is seen a way further than it may be deep.
+static double range_of(const brunt_barrier *b, int32_t law) {
     const brunt_barrier_pair *pair = barrier_pair_of(b, law);
-    return d - pair->offset < fmax(pair->distance, 2 * pair->reach);
+    return fmax(pair->distance, 2 * pair->reach) + pair->offset;
 }
 
-// The part of a facet that a point is nearest to, and its distance.
-static int region_of(const brunt_barrier *b, int32_t point, int32_t facet, const double *u, double *d) {
+static bool in_range(const brunt_barrier *b, int32_t law, double d) { return d < range_of(b, law); }
+
+// The part of a facet that a point is nearest to, where along a curve, and its distance; INFINITY: it is beyond
+// `range`, which was quick to tell.
+static int region_of(const brunt_barrier *b, int32_t point, const barrier_feature *of, const double *u, double *along,
+                     double *d) {
     static const double here[3] = {0};
+    const int32_t facet = of->facet;
     const barrier_arc *arc = barrier_arc_of(b, facet);
-    double x[BRUNT_CUBIC_PLACES][3], s;
+    double x[BRUNT_CUBIC_PLACES][3];
     const double(*at)[3] = (const double(*)[3])x;
     barrier_relative(b, u, point, arc ? arc->place : b->facet[facet], arc ? arc->curve.places : b->dim, x);
-    if (arc) return brunt_closest_of_cubic(here, at, &arc->curve, &s, d);
+    if (arc && brunt_cubic_is_beyond(here, at, &arc->curve, range_of(b, of->law))) return *d = INFINITY, 0;
+    if (arc) return brunt_closest_of_cubic(here, at, &arc->curve, along, d);
     return b->dim == 3 ? brunt_closest_of_triangle(here, at, d) : brunt_closest_of_edge(here, x[0], x[1], d);
 }
 
@@ -64,14 +70,13 @@ static void count_facets(const brunt_barrier *b, int32_t point, const double *u,
     const int32_t body = barrier_body_of(b, point);
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]];
-        barrier_feature of = {.times = 0};
+        barrier_feature of = {.facet = b->facets.item[i]};
         double d;
         int32_t v[3];
-        const int region = region_of(b, point, b->facets.item[i], u, &d);
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
+        const int region = region_of(b, point, &of, u, &of.along, &d);
         if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);
-        of.facet = b->facets.item[i];
         vertices_of(f, region, v);
         feature_at(r, v, &of)->times++;
         count_shared(b, r, f, &of);

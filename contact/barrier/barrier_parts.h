@@ -75,6 +75,7 @@ typedef struct barrier_feature {
     double share;
     int32_t times; // multiplicity
     int32_t facet; // where it is the inside of one
+    double along;  // and where on its curve, of its parameter
     double gap;    // [m] of what may overlap; else INFINITY
 } barrier_feature;
 

@@ -27,12 +27,25 @@ static void along_cubic(const double q[3], const double (*x)[3], const brunt_cub
 
 static double dot_2(const double a[2], const double b[2]) { return a[0] * b[0] + a[1] * b[1]; }
 
+// y(s) from a point: y = c0 + c1 s + c2 s^2 + c3 s^3.
+static void cubic_from(const double q[3], const double (*x)[3], const brunt_cubic *curve, double c[4][2]) {
+    memset(c, 0, 8 * sizeof(double));
+    for (int i = 0; i < curve->places; i++)
+        for (int k = 0; k < 4; k++)
+            for (int a = 0; a < 2; a++) c[k][a] += curve->weight[i][k] * (x[i][a] - q[a]);
+}
+
 // Where between its ends the distance is least, which falls at 0 and rises at 1: by Newton's method, with the middle of
 // what holds the place where it would leave that.
 static double least_along(const double q[3], const double (*x)[3], const brunt_cubic *curve) {
-    double low = 0, high = 1, s = 0.5, y[3][2];
+    double low = 0, high = 1, s = 0.5, c[4][2], y[3][2];
+    cubic_from(q, x, curve, c);
     for (int i = 0; i < 100; i++) {
-        along_cubic(q, x, curve, s, y);
+        for (int a = 0; a < 2; a++) {
+            y[0][a] = c[0][a] + s * (c[1][a] + s * (c[2][a] + s * c[3][a]));
+            y[1][a] = c[1][a] + s * (2 * c[2][a] + s * 3 * c[3][a]);
+            y[2][a] = 2 * c[2][a] + s * 6 * c[3][a];
+        }
         const double slope = dot_2(y[0], y[1]), second = dot_2(y[1], y[1]) + dot_2(y[0], y[2]), to = s - slope / second;
         *(slope < 0 ? &low : &high) = s;
         const double next = second > 0 && to >= low && to <= high ? to : low + (high - low) / 2, way = fabs(next - s);
@@ -40,6 +53,20 @@ static double least_along(const double q[3], const double (*x)[3], const brunt_c
         if (way <= TIE) break;
     }
     return s;
+}
+
+// The curve leaves its chord by 3 s (1 - s)^2 D1 + 3 s^2 (1 - s) D2, D1 and D2 being how far its inner points of Bezier
+// leave the chord's: by no more than 3/4 of the greater.
+bool brunt_cubic_is_beyond(const double q[3], const double (*x)[3], const brunt_cubic *curve, double range) {
+    static const double MORE = 1 + 1e-9; // rounding
+    double c[4][2], bend[2] = {0}, chord;
+    cubic_from(q, x, curve, c);
+    for (int a = 0; a < 2; a++) {
+        const double first = (c[2][a] + c[3][a]) / 3, second = c[3][a] / 3;
+        bend[0] += first * first, bend[1] += (first + second) * (first + second);
+    }
+    brunt_closest_of_edge(q, x[0], x[1], &chord);
+    return chord - 0.75 * sqrt(fmax(bend[0], bend[1])) > MORE * range;
 }
 
 int brunt_closest_of_cubic(const double q[3], const double (*x)[3], const brunt_cubic *curve, double *s, double *d) {
@@ -50,7 +77,7 @@ int brunt_closest_of_cubic(const double q[3], const double (*x)[3], const brunt_
     if (!falls && !rises) *s = dot_2(y[1][0], y[1][0]) < dot_2(y[0][0], y[0][0]);
     if (*s > BORDER && *s < 1 - BORDER) {
         along_cubic(q, x, curve, *s, y[0]);
-        return *d = hypot(y[0][0][0], y[0][0][1]), BRUNT_AT_A | BRUNT_AT_B;
+        return *d = sqrt(dot_2(y[0][0], y[0][0])), BRUNT_AT_A | BRUNT_AT_B;
     }
     const int end = *s > 0.5;
     *s = end, *d = hypot(x[end][0] - q[0], x[end][1] - q[1]);

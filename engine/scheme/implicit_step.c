@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "scheme/implicit.h"
 
 static const double ROUGHLY = 1e-2; // of the forces that act: what a solution leaves that is looked at alone
@@ -362,12 +363,15 @@ static int go_and_rub(struct brunt_implicit *m, brunt_newton_report *report, bru
     return brunt_static_rub(m, minimise, report, error);
 }
 
-static int solve_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
+// `guess`: where bodies may end, like u; NULL: not known.
+static int solve_step(brunt_world *world, double dt, const double *guess, brunt_newton_report *report,
+                      brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     int status = begin_try(world, dt, error);
     if (status && m->holds && m->rows.too_far) report->result = BRUNT_NEWTON_BLOCKED; // a shorter step may do
-    if (!status) status = lead(m, error);
-    if (!status) status = coast(m, error);
+    if (!status && guess) memcpy(m->field.u, guess, (size_t)brunt_implicit_components(m) * sizeof *guess);
+    if (!status && !guess) status = lead(m, error);
+    if (!status && !guess) status = coast(m, error);
     if (!status) status = m->still && m->rubs ? go_and_rub(m, report, error) : go_and_minimise(m, report, error);
     if (!status && m->holds) status = settle(m, report, error);
     if (!status && m->holds && m->rows.any_leave) status = meet(world, report, error);
@@ -382,20 +386,28 @@ static int find_tractions(brunt_world *world, double dt, brunt_newton_report *re
     const brunt_weights own = m->weights;
     if (!m->holds || world->clock.steps > 0 || own.gamma == 1) return BRUNT_OK;
     m->weights = (brunt_weights){1, 0.5, 1, 1, 1};
-    const int status = solve_step(world, dt, report, error);
+    const int status = solve_step(world, dt, NULL, report, error);
     if (!status) brunt_implicit_surfaces_keep(world);
     m->weights = own;
     return status;
 }
 
-// How long contacts are, roughly, by a solution with the stiffness that is guessed; where that fails, it is kept.
-static void look_ahead(brunt_world *world, double dt, brunt_newton_report *report) {
+// How long contacts are, roughly, by a solution with the stiffness that is guessed, from where the step is then solved;
+// where that fails, the guess is kept.
+static int solve_first(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const double asked = m->options.tolerance;
+    const size_t bytes = (size_t)brunt_implicit_components(m) * sizeof(double);
+    double *rough;
     brunt_error vain = {.id = -1};
+    if (BRUNT_NEW(rough, bytes / sizeof *rough + 1, "unknowns", error)) return BRUNT_FAILED;
     m->options.tolerance = fmax(asked, ROUGHLY);
-    if (!solve_step(world, dt, report, &vain)) brunt_static_see(m, &vain);
+    const bool found = !solve_step(world, dt, NULL, report, &vain) && !brunt_static_see(m, &vain);
     m->options.tolerance = asked;
+    memcpy(rough, m->field.u, bytes);
+    const int status = solve_step(world, dt, found ? rough : NULL, report, error);
+    brunt_free(rough);
+    return status;
 }
 
 // Friction goes by the pressures of the step before: over a touch each rubs once, and all of it comes to Coulomb's law.
@@ -426,8 +438,10 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     *report = (brunt_newton_report){.result = BRUNT_NEWTON_BROKEN, .residual_dof = -1};
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
     int status = find_tractions(world, dt, report, error);
-    if (!status && brunt_static_guesses(m)) look_ahead(world, dt, report);
-    if (!status) status = solve_step(world, dt, report, error);
+    if (!status) {
+        status = brunt_static_guesses(m) ? solve_first(world, dt, report, error)
+                                         : solve_step(world, dt, NULL, report, error);
+    }
     return status || !m->rubs || m->still ? status : rub(world, report, error);
 }
 
