@@ -33,6 +33,13 @@ void brunt_linear_close(brunt_linear *s) {
     *s = (brunt_linear){0};
 }
 
+bool brunt_linear_stops(const brunt_linear *s, brunt_error *error) {
+    const brunt_stop *stop = &s->options.stop;
+    if (!stop->asked || !stop->asked(stop->context)) return false;
+    brunt_fail(error, BRUNT_STOPPED, "The solver was stopped.");
+    return true;
+}
+
 brunt_linear_status brunt_linear_analyse(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
                                          brunt_error *error) {
     BRUNT_ASSERT(s->ops && a->pattern);
@@ -42,7 +49,7 @@ brunt_linear_status brunt_linear_analyse(brunt_linear *s, const brunt_team *team
 brunt_linear_status brunt_linear_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
                                         brunt_error *error) {
     BRUNT_ASSERT(s->ops && a->pattern);
-    return s->ops->factor(s, team, a, error);
+    return brunt_linear_stops(s, error) ? BRUNT_LINEAR_FAILED : s->ops->factor(s, team, a, error);
 }
 
 brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,

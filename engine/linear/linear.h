@@ -37,6 +37,7 @@ typedef struct brunt_linear_options {
     int64_t memory;            // [bytes] direct, unsymmetric: what factors may take; 0: what the machine has
     brunt_product_fn *product; // pcg: NULL: of the matrix
     void *context;
+    brunt_stop stop; // asked before each factorisation and iteration of pcg: once it says true they fail
 } brunt_linear_options;
 
 // What happened last; times are the caller's.
@@ -91,6 +92,9 @@ brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, 
 // The same of several at once: x has right sides, then solutions. Of what has a factor.
 brunt_linear_status brunt_linear_solve_many(brunt_linear *s, const brunt_team *team, int count, double *x,
                                             brunt_error *error);
+// Whether solving is to be left; it has then been said.
+bool brunt_linear_stops(const brunt_linear *s, brunt_error *error);
+
 // What a choice goes by.
 typedef struct brunt_linear_size {
     int dim;

@@ -178,7 +178,8 @@ static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
                                           .preconditioner = r->options->preconditioner,
                                           .memory = r->options->memory,
                                           .product = r->options->matrix_free ? brunt_matrix_free_product : NULL,
-                                          .context = &r->n->free};
+                                          .context = &r->n->free,
+                                          .stop = r->options->stop};
     brunt_linear *l = &r->n->linear;
     if (l->ops != solver || l->options.preconditioner != options.preconditioner) r->n->analysed = 0;
     return brunt_linear_open(l, solver, &options, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;

@@ -47,6 +47,7 @@ typedef struct brunt_newton_options {
     // 1 the method goes on. NULL: it is not asked.
     double (*balance)(void *context, const brunt_team *team, const double *u);
     void (*phase)(void *context, brunt_newton_phase phase); // NULL: it is not told
+    brunt_stop stop;                                        // see linear.h; the method is then broken
     void *context;
 } brunt_newton_options;
 

@@ -138,6 +138,7 @@ static brunt_linear_status pcg_solve(brunt_linear *s, const brunt_team *team, co
                        s->report.iterations, sqrt(now.rz / begin.rz), sqrt(now.gain / now.energy), s->options.accuracy);
             return BRUNT_LINEAR_STALLED;
         }
+        if (brunt_linear_stops(s, error)) return BRUNT_LINEAR_FAILED;
         const brunt_linear_status status = pcg_iterate(s, team, x, &now, error);
         if (status != BRUNT_LINEAR_DONE) return status;
     }

@@ -50,6 +50,7 @@ static int choose(brunt_world *world, brunt_step *step, brunt_error *error) {
                                                : wanted;
     if (now->time + step->dt == now->time)
         return brunt_fail_step(&world->clock, NULL, error, "the step is too small to advance the time");
+    if (brunt_implicit_heed(world, error)) return BRUNT_FAILED;
     step->kick = 0; // particles give the grid their mass and momentum, and no forces
     brunt_step_open(world, step);
     return BRUNT_OK;

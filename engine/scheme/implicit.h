@@ -76,10 +76,13 @@ struct brunt_implicit {
     bool holds; // there are surfaces, the two below are of them
     brunt_boundary_rows rows;
     brunt_ghost ghost;
-    brunt_balance balance; // of the last load step; not of the state
-    bool rubs;             // there is friction
-    bool rubs_late;        // from here on by the pressures of the step before; not of the state
-    bool forces;           // materials without a potential: Newton's method has no energy to lower
+    brunt_balance balance;       // of the last load step; not of the state
+    bool stopped;                // the step that is tried is left; not of the state
+    brunt_impulse_account *last; // of boundaries, of pairs, as the step began; of worlds that may be stopped
+    size_t last_capacity;
+    bool rubs;      // there is friction
+    bool rubs_late; // from here on by the pressures of the step before; not of the state
+    bool forces;    // materials without a potential: Newton's method has no energy to lower
     int friction_iterations;
     double *moved; // [m] of the particles of a body: a field of the unknowns where they are
     size_t moved_capacity;
@@ -179,6 +182,12 @@ void brunt_implicit_ask(const struct brunt_implicit *m, brunt_trial_part part);
 // Finds the passes that Newton's phases are.
 void brunt_implicit_follow(brunt_plan *plan);
 
+// --- implicit_stop.c: steps that are left (brunt_world_heed)
+// A step begins that may be. BRUNT_OK, or BRUNT_FAILED: no memory.
+int brunt_implicit_heed(brunt_world *world, brunt_error *error);
+// BRUNT_STOPPED; the accounts are those of the step before again.
+int brunt_implicit_leave(brunt_world *world, brunt_error *error);
+
 // --- implicit_account.c
 // Velocities at the end; kinetic energy, work and impulses of the step, before it is committed. BRUNT_OK, or
 // BRUNT_FAILED: no memory to look at contact.
@@ -194,6 +203,8 @@ int brunt_implicit_surfaces_meet(brunt_world *world, bool *grown, brunt_error *e
 void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double sign, double *force);
 // Keeps the tractions at u: those that the next step begins with.
 void brunt_implicit_surfaces_keep(brunt_world *world);
+// None, as before the first step.
+void brunt_implicit_surfaces_forget(brunt_world *world);
 // What they did over the step; what they do at its end is added to `field.gradient`. Their tractions are kept.
 void brunt_implicit_account_surfaces(brunt_world *world);
 // Adds to a reason why a step has failed which bodies have too few rows to be held; nothing where there are no

@@ -485,12 +485,14 @@ static int check_planes(const brunt_world *world, brunt_error *error) {
     return brunt_fail_position(world, at.body, at.x, error, reason);
 }
 
-// What was tried counts, and nothing else of the step is kept: but the tractions that Newmark's first one has found.
+// Nothing of the step is kept but, of one that failed, how often was tried.
 static int withdraw(brunt_world *world, double wanted, const brunt_newton_counts *tried,
                     const brunt_newton_report *report, brunt_error *error) {
-    const struct brunt_implicit *m = world->plan.implicit;
+    struct brunt_implicit *m = world->plan.implicit;
+    if (m->holds && world->clock.steps == 0) brunt_implicit_surfaces_forget(world); // Newmark's first one has found
+    if (m->stopped) return brunt_implicit_leave(world, error);
     brunt_newton_counts_add(&world->clock.newton, tried);
-    world->clock.withdrawn = !m->holds || m->weights.gamma == 1 || world->clock.steps > 0;
+    world->clock.withdrawn = true;
     return fail_try(world, wanted, report, error);
 }
 
@@ -510,7 +512,8 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
         status = try_step(world, dt, &report, &tried);
         brunt_newton_counts_add(&sum, &m->tried);
         if (error && status) *error = tried;
-        if (!status || report.result == BRUNT_NEWTON_BROKEN) break;
+        if (m->stopped) status = BRUNT_STOPPED;
+        if (!status || m->stopped || report.result == BRUNT_NEWTON_BROKEN) break;
     }
     if (world->timing.pass != own) {
         brunt_pass_end(&world->timing, 0);

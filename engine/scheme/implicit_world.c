@@ -243,7 +243,7 @@ void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies) {
                               f->gradient,  f->contact,     f->step,      f->zero,         m->moved, f->pull,
                               f->stiffness, m->drag_weight, m->drag_rest, f->rub,          f->tried, f->best};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
-    brunt_free(f->support);
+    brunt_free(f->support), brunt_free(m->last);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
     brunt_implicit_condense_free(m);
@@ -307,9 +307,9 @@ bool brunt_world_static(const brunt_world *world) { return world->settings.schem
 size_t brunt_implicit_bytes(const brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
-    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity + m->drag_weight_capacity +
-                   m->drag_rest_capacity + brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity +
-                   brunt_boundary_rows_bytes(&m->rows) + brunt_ghost_bytes(&m->ghost) +
+    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity + m->last_capacity +
+                   m->drag_weight_capacity + m->drag_rest_capacity + brunt_implicit_contact_bytes(&m->contact) +
+                   f->contact_capacity + brunt_boundary_rows_bytes(&m->rows) + brunt_ghost_bytes(&m->ghost) +
                    brunt_boundary_surfaces_bytes(&world->boundaries.surfaces);
     for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
     for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);

@@ -18,6 +18,10 @@ void brunt_world_observe(brunt_world *world, const brunt_observer *observer) {
     }
 }
 
+void brunt_world_heed(brunt_world *world, const brunt_stop *stop) {
+    world->stop = stop ? *stop : (brunt_stop){.asked = NULL};
+}
+
 double brunt_world_step_seconds(const brunt_world *world) { return world->timing.seconds; }
 
 // What the observer takes is no time of the step: both its marks move on by as much.

@@ -466,16 +466,24 @@ static int serve_signals(run *r, brunt_error *error) {
                 : BRUNT_OK;
 }
 
+static bool is_asked_to_stop(void *context) {
+    const brunt_run_options *options = context;
+    return *options->stop;
+}
+
 static int loop(run *r, brunt_error *error) {
     brunt_progress progress = brunt_progress_start(&r->console, r->world);
     double end = brunt_world_end(r->world);
     int32_t warned = brunt_warning_count(r->world);
+    const brunt_stop stop = {is_asked_to_stop, (void *)(uintptr_t)r->options};
+    if (r->options->stop) brunt_world_heed(r->world, &stop);
     int status = BRUNT_OK;
     while (!status && !reached(brunt_world_time(r->world), end)) {
         status = serve_signals(r, error);
         if (status) break;
         double start = brunt_clock(), before = brunt_world_step_seconds(r->world);
         status = brunt_world_step(r->world, r->next_picture, error);
+        if (status == BRUNT_STOPPED) status = serve_signals(r, error);
         r->state.step_seconds += brunt_world_step_seconds(r->world) - before; // without what observers took
         if (r->trace) brunt_trace_step(r->trace, start, brunt_clock());
         if (warned < brunt_warning_count(r->world)) {

@@ -44,6 +44,19 @@ static double number_at(const json_t *object, const char *group, const char *key
     return json_number_value(value);
 }
 
+// [s] of the processor that a program has had.
+static double seconds_of(pid_t child) {
+    char path[64];
+    unsigned long user = 0, system = 0;
+    snprintf(path, sizeof path, "/proc/%d/stat", (int)child);
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_eq(fscanf(file, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system),
+                     2);
+    fclose(file);
+    return (double)(user + system) / (double)sysconf(_SC_CLK_TCK);
+}
+
 START_TEST(says_what_it_does) {
     small_expect("check small.yaml --quick", 0, "implicit steps\n  c dt / h 0.73");
     small_expect("check small.yaml --quick", 0, "solver pcg: ");
@@ -276,6 +289,38 @@ START_TEST(in_two_legs) {
 }
 END_TEST
 
+// Its second step has no end: tolerance and iterations are beyond reach. What the first has left is what it is stopped
+// with, once it has been at the second for a while by the processor's time.
+START_TEST(stops_within_a_step) {
+    static const int signals[] = {SIGTERM, SIGINT};
+    static const char *const more[] = {"--set", "newton.tolerance=1e-30", "--set", "newton.iterations=100000"};
+    small_put(
+        "small.yaml",
+        "brunt: 1\ntitle: pressed from the second step on\ndimension: 2\n"
+        "time: {end: 10 ms, scheme: implicit, step: 1 ms}\n"
+        "materials: {rubber: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\n"
+        "bodies: {low: {method: fem, material: rubber, size: 0.05, shape: {box: {min: [0, 0], max: [0.4, 0.2]}}}}\n"
+        "boundaries:\n  - {name: ground, body: low, group: ymin, fix: all}\n"
+        "  - {name: press, body: low, group: ymax, traction: [0, -1 kPa], table: [[1 ms, 0], [2 ms, 1]]}\n"
+        "output: {every: 1 ms, history: 1 ms, checkpoint: 10 min}\n");
+    pid_t child = small_begin("out", "out/vtu/low_000001.vtu", more, 4);
+    const double begin = seconds_of(child);
+    while (seconds_of(child) < begin + 0.3) small_wait(0.002);
+    ck_assert_int_eq(small_end(child, signals[_i]), 75);
+    json_t *s = summary_of("out");
+    ck_assert_str_eq(json_string_value(json_object_get(s, "status")), "stopped");
+    const char *reason = json_string_value(json_object_get(s, "reason"));
+    ck_assert_str_eq(reason, "stopped by a signal at t = 0.001 s; go on with --resume");
+    ck_assert_double_eq(number_at(s, NULL, "time"), 1e-3);
+    ck_assert_double_eq(number_at(s, NULL, "steps"), 1);
+    ck_assert_double_lt(number_at(s, "newton", "iterations"), 2); // those of the second do not count
+    json_decref(s);
+    small_expect("info out/checkpoint.h5", 0, "time       0.001 s\nstep       1\n");
+    ck_assert_int_eq(small_shell("grep -q 'checkpoint at t = 0.001 s, step 1' out/log.txt"), 0);
+    ck_assert_int_eq(small_shell("test $(grep -c . out/history.csv) = 3"), 0);
+}
+END_TEST
+
 START_TEST(that_does_not_converge_is_70) {
     small_expect("run small.yaml -o out --set newton.iterations=1 --set newton.cut=1", 70, "does not converge");
     small_expect("info out/checkpoint.h5", 0, "FAILED");
@@ -335,6 +380,7 @@ int main(void) {
     tcase_add_test(tests, is_the_scheme_that_is_set);
     tcase_add_test(tests, runs_by_both);
     tcase_add_test(tests, in_two_legs);
+    tcase_add_loop_test(tests, stops_within_a_step, 0, 2);
     tcase_add_test(tests, that_does_not_converge_is_70);
     tcase_add_test(tests, goes_on_where_a_step_failed);
     suite_add_tcase(suite, tests);

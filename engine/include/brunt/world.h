@@ -29,8 +29,18 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error);
 void brunt_world_destroy(brunt_world *world); // frees all of it; NULL: nothing
 
 // One time step. BRUNT_OK, or BRUNT_FAILED with where and why; the world then is as the failing step left it, to be
-// looked at. `limit` [s]: a time that must be hit exactly (an output time), INFINITY for none.
+// looked at; or BRUNT_STOPPED, see below. `limit` [s]: a time that must be hit exactly (an output time), INFINITY for
+// none.
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error);
+
+// Asks the world to leave a step that is long, as implicit ones and load steps may be: `asked` is called by the thread
+// that takes the step before each factorisation and in each iteration of conjugate gradients. Once it says true the
+// step ends with BRUNT_STOPPED, and the state is that of the step before, to the bit.
+typedef struct brunt_stop {
+    bool (*asked)(void *context); // NULL: never
+    void *context;
+} brunt_stop;
+void brunt_world_heed(brunt_world *world, const brunt_stop *stop); // copied; NULL: nothing (default)
 
 // Whether the last step failed and has changed nothing, as implicit ones do whose equations were not solved: the state
 // is that of the step before, which others may go on from.
