@@ -95,6 +95,7 @@ struct brunt_implicit {
     brunt_world *world;             // for the phases of Newton's method
     int phase[BRUNT_NEWTON_PHASES]; // their passes
     brunt_newton_counts tried;      // of the step that is tried
+    double *turned;                 // of all bodies at the end of a run: share of moments that are wrong; else NULL
     struct {                        // the body whose forces balance least, where Newton's method would have ended
         int body;                   // among all; -1: all do
         int32_t node;               // of the unknowns, with the greatest force left
@@ -187,6 +188,13 @@ void brunt_implicit_follow(brunt_plan *plan);
 int brunt_implicit_heed(brunt_world *world, brunt_error *error);
 // BRUNT_STOPPED; the accounts are those of the step before again.
 int brunt_implicit_leave(brunt_world *world, brunt_error *error);
+
+// --- implicit_turns.c: bodies of small strain that have turned
+// At the end of a run, by the gradient of what bodies store where the step ends: which have wrong moments. BRUNT_OK, or
+// BRUNT_FAILED: no memory.
+int brunt_implicit_take_turns(struct brunt_implicit *m, const double *force, brunt_error *error);
+// Warns of them, once bodies are where the step ends.
+void brunt_implicit_tell_turns(brunt_world *world);
 
 // --- implicit_account.c
 // Velocities at the end; kinetic energy, work and impulses of the step, before it is committed. BRUNT_OK, or

@@ -172,6 +172,7 @@ int brunt_implicit_account(brunt_world *world, brunt_step *step, brunt_error *er
     }
     if (brunt_implicit_sums(m, m->fixed_terms, m->body_terms, NULL, &bodies, error)) return BRUNT_FAILED;
     world->ledger.scheme += bodies.work - (bodies.after - bodies.before);
+    if (brunt_implicit_take_turns(m, f->step, error)) return BRUNT_FAILED;
     memcpy(f->gradient, f->step, (size_t)brunt_implicit_components(m) * sizeof *f->gradient);
     if (m->contact.barrier && brunt_implicit_account_contact(world, error)) return BRUNT_FAILED;
     if (m->holds) brunt_implicit_account_surfaces(world);

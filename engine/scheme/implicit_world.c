@@ -243,7 +243,7 @@ void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies) {
                               f->gradient,  f->contact,     f->step,      f->zero,         m->moved, f->pull,
                               f->stiffness, m->drag_weight, m->drag_rest, f->rub,          f->tried, f->best};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
-    brunt_free(f->support), brunt_free(m->last);
+    brunt_free(f->support), brunt_free(m->last), brunt_free(m->turned);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
     brunt_implicit_condense_free(m);

@@ -101,5 +101,6 @@ int brunt_pass_watch_implicit(brunt_world *world, brunt_step *step, brunt_error 
     const bool cut = now->newton_last.cuts > 0, still = world->settings.scheme == BRUNT_STATIC;
     const double last = cut ? step->dt : now->next_dt;
     now->next_dt = fmin(world->settings.fixed_step, cut && still ? last : 2 * last);
+    brunt_implicit_tell_turns(world);
     return watch_energy(world, 1, error); // there may be few steps
 }
