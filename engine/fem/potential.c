@@ -21,11 +21,8 @@ static int make_arrays(brunt_fem_potential *p, brunt_error *error) {
         BRUNT_NEW(p->limit, body->block_count, "blocks of a mesh", error) ||
         BRUNT_NEW(p->first, body->element_count + 1, elements, error) ||
         BRUNT_NEW(p->node, (size_t)body->element_count * (size_t)p->nodes, "nodes of elements of a mesh", error) ||
-        BRUNT_NEW(p->slot, body->element_count, elements, error) ||
-        BRUNT_NEW(p->work, p->threads, "threads with room to work", error))
+        BRUNT_NEW(p->slot, body->element_count, elements, error))
         return BRUNT_FAILED;
-    for (int w = 0; w < p->threads; w++)
-        if (brunt_fem_workspace_fit(&p->work[w], body, error)) return BRUNT_FAILED;
     return p->kind->make(p, error);
 }
 
@@ -73,8 +70,7 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
                                .modes = brunt_fem_has_hourglass(body) ? body->element->hourglass_modes : 0,
                                .tangents = brunt_material_tangents(&body->material, body->dim),
                                .history = strength->plastic || strength->shear_viscous || body->material.differences,
-                               .moduli = moduli_of(body),
-                               .threads = team->threads};
+                               .moduli = moduli_of(body)};
     int status = make_arrays(p, error);
     if (!status) {
         make_stencils(p);
@@ -88,11 +84,10 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
 
 void brunt_fem_potential_free(brunt_fem_potential *p) {
     if (!p) return;
-    for (int w = 0; p->work && w < p->threads; w++) brunt_fem_workspace_free(&p->work[w]);
     brunt_colours_free(&p->colours);
     brunt_free(p->slab), brunt_free(p->membrane), brunt_free(p->displacement), brunt_free(p->way), brunt_free(p->force),
         brunt_free(p->energy);
-    brunt_free(p->limit), brunt_free(p->first), brunt_free(p->node), brunt_free(p->slot), brunt_free(p->work);
+    brunt_free(p->limit), brunt_free(p->first), brunt_free(p->node), brunt_free(p->slot);
     brunt_free(p);
 }
 
@@ -280,6 +275,7 @@ double brunt_fem_hessian_over(const brunt_fem_potential *p, const brunt_fem_pote
 typedef struct fem_commit {
     brunt_fem_potential *p;
     const double *u, *v;
+    brunt_fem_workspace *work;
 } fem_commit;
 
 static void move_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -297,18 +293,18 @@ static void move_nodes(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 static void commit_blocks(void *context, int64_t begin, int64_t end, int worker) {
-    brunt_fem_potential *p = context;
-    for (int64_t b = begin; b < end; b++) p->kind->commit(p, (int32_t)b, &p->work[worker]);
+    const fem_commit *commit = context;
+    for (int64_t b = begin; b < end; b++) commit->p->kind->commit(commit->p, (int32_t)b, &commit->work[worker]);
 }
 
 int brunt_fem_commit(brunt_fem_potential *p, const brunt_team *team, const double *u, const double *v,
-                     brunt_error *error) {
+                     brunt_fem_workspace *work, brunt_error *error) {
     brunt_fem_body *body = p->body;
-    fem_commit moves = {p, u, v};
+    fem_commit moves = {p, u, v, work};
     fem_call call = {.p = p};
     brunt_parallel(team->threads, body->node_count, NODE_GRAIN, move_nodes, &moves, team->timer);
     brunt_parallel(team->threads, body->node_count, NODE_GRAIN, run_nodes, &call, team->timer);
-    brunt_parallel(team->threads, body->block_count, 1, commit_blocks, p, team->timer);
+    brunt_parallel(team->threads, body->block_count, 1, commit_blocks, &moves, team->timer);
     for (int32_t b = 0; b < body->block_count; b++) {
         const brunt_fem_report *report = &body->report[b];
         if (report->bad < 0) continue;

@@ -24,10 +24,11 @@ void brunt_fem_potential_step(brunt_fem_potential *potential, double dt);
 // The term; valid as long as the potential. Its `limit` leaves an element a tenth of the way to J = 0.
 brunt_term brunt_fem_potential_term(brunt_fem_potential *potential);
 // The step is that of displacements u [m], and nodes have velocities v [m/s] at its end (v NULL: those they have), both
-// of all unknowns: places, velocities, deformation gradients, stress, state, partial forces and the blocks' reports
-// follow. BRUNT_OK, or BRUNT_FAILED with body, element, place and reason.
+// of all unknowns; with room to work for each thread, as large as the body wants: places, velocities, deformation
+// gradients, stress, state, partial forces and the blocks' reports follow. BRUNT_OK, or BRUNT_FAILED with body,
+// element, place and reason.
 int brunt_fem_commit(brunt_fem_potential *potential, const brunt_team *team, const double *u, const double *v,
-                     brunt_error *error);
+                     brunt_fem_workspace *work, brunt_error *error);
 // Whether the Hessian is the same wherever the body goes: of triangles of linear elasticity that nothing else is said
 // of, none of whose nodes are held.
 bool brunt_fem_hessian_stays(const brunt_fem_potential *potential);

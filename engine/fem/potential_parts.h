@@ -38,8 +38,6 @@ struct brunt_fem_potential {
     int64_t *first;                // stencils: the elements in order of slots
     int32_t *node, *slot;
     brunt_colours colours;
-    brunt_fem_workspace *work; // a thread each
-    int threads;
 };
 
 typedef enum fem_wanted { FEM_ENERGY, FEM_GRADIENT, FEM_TANGENT, FEM_LIMIT, FEM_PRODUCT } fem_wanted;

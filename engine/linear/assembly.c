@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/check.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -18,16 +19,30 @@ static int64_t bundle_end(const brunt_colours *c, int64_t g) {
 
 static int64_t bundles(const brunt_colours *c) { return (c->count + c->bundle - 1) / c->bundle; }
 
+// Nodes of a list: of one of many bodies they are next to none of all.
+typedef struct node_range {
+    int32_t begin, end;
+} node_range;
+
+static node_range range_of(const brunt_stencils *list) {
+    node_range range = {INT32_MAX, 0};
+    for (int64_t k = list->count ? list->first[0] : 0; k < (list->count ? list->first[list->count] : 0); k++) {
+        if (list->node[k] < range.begin) range.begin = list->node[k];
+        if (list->node[k] >= range.end) range.end = list->node[k] + 1;
+    }
+    return range.begin < range.end ? range : (node_range){0, 0};
+}
+
 // Gives colours base .. base + 63 to bundles that have none; how many are left without. A node remembers the colours
 // of this round by one bit each.
-static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, int32_t nodes, int64_t base) {
+static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, const node_range *range, int64_t base) {
     int64_t left = 0;
-    memset(c->used, 0, (size_t)nodes * sizeof *c->used);
+    memset(c->used, 0, (size_t)(range->end - range->begin) * sizeof *c->used);
     for (int64_t g = 0; g < bundles(c); g++) {
         if (c->order[g] >= 0) continue;
         const int64_t from = list->first[g * c->bundle], to = list->first[bundle_end(c, g)];
         uint64_t used = 0;
-        for (int64_t k = from; k < to; k++) used |= c->used[list->node[k]];
+        for (int64_t k = from; k < to; k++) used |= c->used[list->node[k] - range->begin];
         if (used == UINT64_MAX) {
             left++;
             continue;
@@ -35,7 +50,7 @@ static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, int32_
         const int bit = __builtin_ctzll(~used);
         c->order[g] = base + bit;
         if (base + bit >= c->colours) c->colours = (int32_t)(base + bit + 1);
-        for (int64_t k = from; k < to; k++) c->used[list->node[k]] |= (uint64_t)1 << bit;
+        for (int64_t k = from; k < to; k++) c->used[list->node[k] - range->begin] |= (uint64_t)1 << bit;
     }
     return left;
 }
@@ -53,7 +68,9 @@ static int sort_by_colour(brunt_colours *c, brunt_error *error) {
 int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *list,
                        brunt_error *error) {
     int64_t largest = 0;
-    if (BRUNT_CAPACITY(c->used, (size_t)nodes, 0, "nodes of stencils", error) ||
+    const node_range range = range_of(list);
+    BRUNT_ASSERT(range.begin >= 0 && range.end <= nodes);
+    if (BRUNT_CAPACITY(c->used, (size_t)(range.end - range.begin), 0, "nodes of stencils", error) ||
         BRUNT_CAPACITY(c->order, (size_t)list->count, 0, "stencils to assemble", error) ||
         BRUNT_CAPACITY(c->stencil, (size_t)list->count, 0, "stencils to assemble", error))
         return BRUNT_FAILED;
@@ -64,7 +81,7 @@ int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_
     }
     c->count = list->count, c->bundle = list->count < MANY ? 1 : BUNDLE, c->colours = 0, c->threads = team->threads,
     c->dense_size = largest * largest * dim * dim;
-    for (int64_t base = 0, left = bundles(c); left; base += COLOURS_A_ROUND) left = colour_round(c, list, nodes, base);
+    for (int64_t base = 0, left = bundles(c); left; base += COLOURS_A_ROUND) left = colour_round(c, list, &range, base);
     if (sort_by_colour(c, error)) return BRUNT_FAILED;
     return BRUNT_CAPACITY(c->dense, (size_t)(c->dense_size * c->threads), 0, "values of dense matrices of stencils",
                           error);

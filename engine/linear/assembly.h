@@ -9,7 +9,7 @@
 typedef struct brunt_colours {
     int64_t *stencil; // the first of each bundle, ordered by colour, ascending within one
     int64_t *first;   // colours + 1
-    uint64_t *used;   // of each node: colours that it has met
+    uint64_t *used;   // of each node from the first to the last of the list: colours that it has met
     int64_t *order;   // colour of each bundle
     double *dense;    // `dense_size` for each thread
     int64_t count, dense_size;

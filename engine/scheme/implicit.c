@@ -62,7 +62,7 @@ static int commit_meshes(brunt_world *world, brunt_error *error) {
     world->ledger.fem_kinetic = 0;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         brunt_fem_body *fem = &world->bodies.fem[k];
-        if (brunt_fem_commit(m->fem[k], &m->team, m->field.u, brunt_implicit_velocity(m), error))
+        if (brunt_fem_commit(m->fem[k], &m->team, m->field.u, brunt_implicit_velocity(m), world->scratch.meshes, error))
             return brunt_fail_inner(&world->clock, NULL, error);
         world->ledger.fem_kinetic += brunt_fem_audit(fem).kinetic;
         for (int32_t b = 0; b < fem->block_count; b++) stored += fem->report[b].hourglass_stored;

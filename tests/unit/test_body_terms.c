@@ -199,14 +199,17 @@ static brunt_point_energy commit_of(const subject *s, brunt_fem_potential *p, br
     uint64_t seed = 2;
     real before[3];
     brunt_error error;
+    brunt_fem_workspace work[3] = {{NULL, 0}};
+    for (int t = 0; t < 3; t++) ck_assert_int_eq(brunt_fem_workspace_fit(&work[t], body, &error), BRUNT_OK);
     memcpy(before, brunt_fem_node(body, 5), sizeof before);
-    ck_assert_int_eq(brunt_fem_commit(p, &three, u, v, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_fem_commit(p, &three, u, v, work, &error), BRUNT_OK);
     ck_assert(!memcmp(before, brunt_fem_node(body, 5), sizeof before));
     for (int64_t k = 0; k < s->nodes * s->dim; k++)
         u[k] = s->mean[k % s->dim] * s->place[k] + s->size * between(&seed), v[k] = between(&seed);
     const double tried = s->term.ops->energy(s->term.self, &one, u).value;
     s->term.ops->gradient(s->term.self, &one, u, g);
-    ck_assert_msg(brunt_fem_commit(p, &three, u, v, &error) == BRUNT_OK, "%s", error.message);
+    ck_assert_msg(brunt_fem_commit(p, &three, u, v, work, &error) == BRUNT_OK, "%s", error.message);
+    for (int t = 0; t < 3; t++) brunt_fem_workspace_free(&work[t]);
     body->material.implicit = true;
     const brunt_point_energy stored = brunt_fem_energy(body);
     double hourglass = 0, worst = 0, size = 0;

@@ -167,10 +167,36 @@ START_TEST(bodies_that_meet_are_those_of_all_pairs) {
 }
 END_TEST
 
+// [bytes] that a world of so many rows takes once it has made a step.
+static double bytes_of(int side) {
+    brunt_world_def def = rows_of(side, 1.5, BRUNT_FEM);
+    def.contact.method = BRUNT_CONTACT_BARRIER, def.contact.distance = 0.02;
+    def.threads = 2;
+    const size_t before = brunt_memory_live();
+    brunt_world *world = world_from(&def);
+    world_steps(world, 1);
+    const double bytes = (double)(brunt_memory_live() - before);
+    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
+    return bytes;
+}
+
+// What each keeps of the nodes of all others, were it but a bit, would be more; and rooms of its own to work in, 27 kB
+// for each of two threads.
+START_TEST(memory_grows_with_the_bodies) {
+    const double small = bytes_of(20), middle = bytes_of(30), large = bytes_of(40);
+    const double first = (middle - small) / (30 * 30 - 20 * 20), second = (large - middle) / (40 * 40 - 30 * 30);
+    printf("%.0f and %.0f bytes a body\n", first, second);
+    ck_assert_double_le(second, 1.05 * first);
+    ck_assert_double_le(first, 90e3);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("many implicit bodies");
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 120);
+    tcase_add_test(all, memory_grows_with_the_bodies);
     tcase_add_test(all, pairs_are_those_that_are_near);
     tcase_add_test(all, there_are_none_where_nothing_is_near);
     tcase_add_loop_test(all, two_that_touch_are_refused, 0, 2);
