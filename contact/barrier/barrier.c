@@ -31,7 +31,7 @@ void brunt_barrier_free(brunt_barrier *b) {
         brunt_free(r->feature), brunt_free(r->edge), brunt_free(r->vertex), brunt_free(r->contact);
     }
     brunt_free(b->workspace), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
-    brunt_free(b->felt), brunt_free(b->felt_before);
+    brunt_free(b->felt), brunt_free(b->felt_before), brunt_free(b->here);
     brunt_free(b->kept);
     sets_free(&b->sets), sets_free(&b->lagged_sets);
     brunt_colours_free(&b->colours), brunt_colours_free(&b->lagged_colours);
@@ -180,5 +180,6 @@ int brunt_barrier_set_step(brunt_barrier *b, const brunt_barrier_step *step, bru
     barrier_place_rims(b);
     b->contacts.count = b->lagged.count = 0;
     b->pair_count = b->key_count = 0;
+    b->here_count = 0;
     return BRUNT_OK;
 }

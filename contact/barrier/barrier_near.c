@@ -269,6 +269,7 @@ int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u,
     bool bad[BRUNT_THREAD_LIMIT] = {false};
     barrier_way work = {.b = b, .u = u, .p = p, .part = part, .bad = bad};
     const size_t points = (size_t)barrier_points(b) + 1;
+    b->here_count = 0;
     if (BRUNT_CAPACITY(b->point_box, points, 0, "boxes about points", error) ||
         BRUNT_CAPACITY(b->far, (size_t)b->step.particles.count + 1, 0, "points in contact", error) ||
         BRUNT_CAPACITY(b->asked, points, 0, "points in contact", error) ||

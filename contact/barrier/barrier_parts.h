@@ -174,8 +174,12 @@ struct brunt_barrier {
     bool known;                            // they are of this step
     double part;                           // of a way that they are found along, no step goes farther
     bool swept, stale;                     // found along a way; `sets` are not those of `contacts`
-    brunt_error unsaid;                    // memory ran out where no function could say so: the next look does
-    int32_t *task;                         // points that are near something; edges as -1 - edge
+    double *here;                          // [m] of the first `here_count` unknowns: where `contacts` are listed
+    int64_t here_count;                    // as many as points have; 0: they are listed nowhere
+    bool looked_here;                      // and what is near has been found
+    size_t here_capacity;
+    brunt_error unsaid; // memory ran out where no function could say so: the next look does
+    int32_t *task;      // points that are near something; edges as -1 - edge
     int64_t task_count;
     double (*task_energy)[2];
     int64_t *task_first;

@@ -5,13 +5,43 @@ enum { AT_ONCE = 1024 }; // contacts whose forces are kept at a time
 
 // ---------------------------------------------------------------------------------------------------- barrier
 
+// How many unknowns there are, at least: up to the last of a point.
+static int64_t unknowns_of(const brunt_barrier *b) {
+    const brunt_barrier_particles *p = &b->step.particles;
+    int32_t last = -1;
+    for (int32_t v = 0; v < b->vertex_count; v++) last = b->step.node[v] > last ? b->step.node[v] : last;
+    for (int64_t k = 0; p->count && k < p->first[p->count]; k++) last = p->node[k] > last ? p->node[k] : last;
+    for (int32_t q = 0; q < b->step.plane_count; q++)
+        last = b->step.planes[q].node > last ? b->step.planes[q].node : last;
+    return ((int64_t)last + 1) * b->dim;
+}
+
+// Whether contacts are listed where places are by u: the terms are asked there one after the other, for forces, sets,
+// and Hessians.
+static bool is_here(const brunt_barrier *b, const double *u) {
+    return u && b->here_count && !memcmp(b->here, u, (size_t)b->here_count * sizeof *u);
+}
+
+// Lists contacts at u, what is near being known.
+static int list_at(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
+    if (is_here(b, u)) return BRUNT_OK;
+    const int64_t count = u ? unknowns_of(b) : 0; // NULL: all are 0, and nodes may have no numbers yet
+    b->here_count = 0, b->looked_here = false, b->stale = true;
+    if (barrier_list_contacts(b, team, u, &b->contacts, error) ||
+        BRUNT_CAPACITY(b->here, (size_t)count + 1, 0, "unknowns of contact", error))
+        return BRUNT_FAILED;
+    if (u) memcpy(b->here, u, (size_t)count * sizeof *u);
+    b->here_count = count;
+    return BRUNT_OK;
+}
+
 // All pairs that are near, as if they touched: what may couple on the way.
 static int list_candidates(brunt_barrier *b, brunt_error *error) {
     barrier_contacts *list = &b->contacts;
     const int64_t most =
         b->facets.first[b->facets.count] + b->planes.first[b->planes.count] + b->edges.first[b->edges.count];
     if (BRUNT_CAPACITY(list->contact, (size_t)most + 1, 0, "places of contact", error)) return BRUNT_FAILED;
-    list->count = 0;
+    list->count = 0, b->here_count = 0;
     for (int32_t i = 0; i < b->facets.count; i++) {
         for (int64_t k = b->facets.first[i]; k < b->facets.first[i + 1]; k++) {
             const int32_t *f = b->facet[b->facets.item[k]];
@@ -41,17 +71,14 @@ static int term_look(void *self, const brunt_team *team, const double *u, const 
     if (brunt_hand_on(error, &b->unsaid) || barrier_find_near(b, team, u, p, part, error)) return BRUNT_FAILED;
     b->contacts.count = b->sets.count = 0;
     b->stale = true;
-    return p ? BRUNT_OK : barrier_list_contacts(b, team, u, &b->contacts, error);
+    if (p) return BRUNT_OK;
+    if (list_at(b, team, u, error)) return BRUNT_FAILED;
+    b->looked_here = true;
+    return BRUNT_OK;
 }
 
 static brunt_energy_sum term_energy(void *self, const brunt_team *team, const double *u) {
     return barrier_sum_energy(self, team, u);
-}
-
-static bool list_at(brunt_barrier *b, const brunt_team *team, const double *u) {
-    barrier_list_contacts(b, team, u, &b->contacts, &b->unsaid);
-    b->stale = true;
-    return !b->unsaid.code;
 }
 
 typedef struct force_work {
@@ -92,7 +119,7 @@ static void add_forces(force_work *w, const brunt_team *team, double *g) {
 static void term_gradient(void *self, const brunt_team *team, const double *u, double *g) {
     brunt_barrier *b = self;
     force_work work = {.b = b, .list = &b->contacts, .u = u};
-    if (list_at(b, team, u)) add_forces(&work, team, g);
+    if (!list_at(b, team, u, &b->unsaid) && !b->unsaid.code) add_forces(&work, team, g);
 }
 
 static brunt_stencils term_stencils(void *self) {
@@ -107,8 +134,8 @@ static brunt_stencils term_stencils(void *self) {
 static void term_hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *m) {
     brunt_barrier *b = self;
     const barrier_assembly a = {b, &b->contacts, &b->sets, &b->colours, false};
-    if (!list_at(b, team, u)) return;
-    if (!barrier_make_sets(b, &b->contacts, &b->sets, &b->unsaid))
+    if (list_at(b, team, u, &b->unsaid) || b->unsaid.code) return;
+    if (!b->stale || !barrier_make_sets(b, &b->contacts, &b->sets, &b->unsaid))
         barrier_add_hessian(&a, team, u, project, m, &b->unsaid);
 }
 
@@ -134,15 +161,19 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier) {
 
 // Contacts that rub at u, of what is near, with their normal forces.
 static int list_rubbing(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
-    if (barrier_list_contacts(b, team, u, &b->lagged, error) ||
-        BRUNT_CAPACITY(b->rub, (size_t)b->lagged.count + 1, 0, "places that rub", error))
+    barrier_contacts *listed = &b->contacts;
+    if (list_at(b, team, u, error) ||
+        BRUNT_CAPACITY(b->lagged.contact, (size_t)listed->count + 1, 0, "places of contact", error) ||
+        BRUNT_CAPACITY(b->rub, (size_t)listed->count + 1, 0, "places that rub", error))
         return BRUNT_FAILED;
     barrier_contacts *list = &b->lagged;
     int64_t kept = 0;
-    for (int64_t i = 0; i < list->count; i++) {
-        barrier_contact *c = &list->contact[i];
-        c->normal_force = barrier_contact_force(b, c);
-        if (c->normal_force > 0 && barrier_law_of(b, c->law).friction > 0) list->contact[kept++] = *c;
+    for (int64_t i = 0; i < listed->count; i++) {
+        const barrier_contact *c = &listed->contact[i];
+        const double force = barrier_contact_force(b, c);
+        if (!(force > 0 && barrier_law_of(b, c->law).friction > 0)) continue;
+        list->contact[kept] = *c;
+        list->contact[kept++].normal_force = force;
     }
     list->count = kept;
     for (int64_t i = 0; i < kept; i++) barrier_slip_begin(b, &list->contact[i], u, &b->rub[i]);
@@ -150,7 +181,9 @@ static int list_rubbing(brunt_barrier *b, const brunt_team *team, const double *
 }
 
 int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
-    if (barrier_find_near(b, team, u, NULL, 1, error) || list_rubbing(b, team, u, error)) return BRUNT_FAILED;
+    const bool looked = is_here(b, u) && b->looked_here;
+    if ((!looked && barrier_find_near(b, team, u, NULL, 1, error)) || list_rubbing(b, team, u, error))
+        return BRUNT_FAILED;
     return barrier_make_sets(b, &b->lagged, &b->lagged_sets, error);
 }
 
