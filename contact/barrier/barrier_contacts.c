@@ -41,16 +41,13 @@ static void count_shared(const brunt_barrier *b, barrier_workspace *r, const int
         for (int i = 0; i < 3; i++) shared_at(r->edge, &r->edge_count, f[i == 2], f[i == 0 ? 1 : 2], of)->facets++;
 }
 
-// [m] From inside, what may overlap is seen a way further than it may be deep.
-static double range_of(const brunt_barrier *b, int32_t law) {
+// From inside, what may overlap is seen a way further than it may be deep.
+static bool in_range(const brunt_barrier *b, int32_t law, double d) {
     const brunt_barrier_pair *pair = barrier_pair_of(b, law);
-    return fmax(pair->distance, 2 * pair->reach) + pair->offset;
+    return d - pair->offset < fmax(pair->distance, 2 * pair->reach);
 }
 
-static bool in_range(const brunt_barrier *b, int32_t law, double d) { return d < range_of(b, law); }
-
-// The part of a facet that a point is nearest to, where along a curve, and its distance; INFINITY: it is beyond
-// `range`, which was quick to tell.
+// The part of a facet that a point is nearest to, where along a curve, and its distance.
 static int region_of(const brunt_barrier *b, int32_t point, const barrier_feature *of, const double *u, double *along,
                      double *d) {
     static const double here[3] = {0};
@@ -59,7 +56,6 @@ static int region_of(const brunt_barrier *b, int32_t point, const barrier_featur
     double x[BRUNT_CUBIC_PLACES][3];
     const double(*at)[3] = (const double(*)[3])x;
     barrier_relative(b, u, point, arc ? arc->place : b->facet[facet], arc ? arc->curve.places : b->dim, x);
-    if (arc && brunt_cubic_is_beyond(here, at, &arc->curve, range_of(b, of->law))) return *d = INFINITY, 0;
     if (arc) return brunt_closest_of_cubic(here, at, &arc->curve, along, d);
     return b->dim == 3 ? brunt_closest_of_triangle(here, at, d) : brunt_closest_of_edge(here, x[0], x[1], d);
 }
@@ -68,12 +64,18 @@ static int region_of(const brunt_barrier *b, int32_t point, const barrier_featur
 static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
     r->feature_count = r->edge_count = r->vertex_count = 0;
     const int32_t body = barrier_body_of(b, point);
+    int32_t clear = BRUNT_NONE, looked = BRUNT_NONE; // of another body
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]];
         barrier_feature of = {.facet = b->facets.item[i]};
         double d;
         int32_t v[3];
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
+        if (b->body[f[0]] != looked) {
+            looked = b->body[f[0]];
+            if (barrier_is_clear_of(b, point, looked, barrier_pair_of(b, of.law), u)) clear = looked;
+        }
+        if (clear == looked) continue;
         const int region = region_of(b, point, &of, u, &of.along, &d);
         if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);

@@ -44,6 +44,46 @@ void barrier_sign(const brunt_barrier *b, int32_t point, const barrier_feature *
     for (int k = 0; k < 3; k++) at->n[k] = corner ? (at->d < 0 ? -at->n[k] : at->n[k]) : n[k] / sqrt(dot(n, n));
 }
 
+// The chord of a body's that a point is nearest to, and the most that a curve of these bends from its own.
+typedef struct chord {
+    int32_t facet;
+    int ends; // bits of those it is nearest to
+    double d, bend;
+    double from[3]; // its first vertex, from the point
+} chord;
+
+static chord nearest_chord(const brunt_barrier *b, int32_t point, int32_t body, const double *u) {
+    static const double here[3] = {0};
+    chord c = {.facet = BRUNT_NONE, .d = INFINITY};
+    for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
+        const int32_t facet = b->facets.item[i];
+        const barrier_arc *arc = barrier_arc_of(b, facet);
+        double x[BRUNT_CUBIC_PLACES][3], d;
+        if (b->body[b->facet[facet][0]] != body) continue;
+        barrier_relative(b, u, point, arc ? arc->place : b->facet[facet], arc ? arc->curve.places : 2, x);
+        if (arc) c.bend = fmax(c.bend, brunt_cubic_bend((const double(*)[3])x, &arc->curve));
+        const int ends = brunt_closest_of_edge(here, x[0], x[1], &d);
+        if (d >= c.d) continue;
+        c.facet = facet, c.ends = ends, c.d = d;
+        memcpy(c.from, x[ends == BRUNT_AT_B], sizeof c.from);
+    }
+    return c;
+}
+
+bool barrier_is_clear_of(const brunt_barrier *b, int32_t point, int32_t body, const brunt_barrier_pair *pair,
+                         const double *u) {
+    static const double MORE = 1 + 1e-9; // rounding
+    if (!(pair->reach > 0)) return false;
+    const chord c = nearest_chord(b, point, body, u);
+    double n[3] = {0};
+    if (!(c.d > MORE * (pair->distance + pair->offset + 2 * c.bend)) || c.facet < 0) return false;
+    if (c.ends == (BRUNT_AT_A | BRUNT_AT_B))
+        outward(b, c.facet, u, n);
+    else
+        outward_at(b, point, b->facet[c.facet][c.ends == BRUNT_AT_B], u, n);
+    return dot(n, c.from) < 0;
+}
+
 // The gap of feature i at u, by its offset.
 static double gap_of(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u) {
     const barrier_contact c = barrier_contact_with(b, point, f, u);

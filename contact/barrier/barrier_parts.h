@@ -283,6 +283,10 @@ void barrier_meet_arc(const brunt_barrier *b, const barrier_feature *f, int32_t 
 // --- surfaces that may overlap (barrier_overlap.c)
 // The gap of a contact with a feature gets its sign: inside the other body it is negative, and n points out of it.
 void barrier_sign(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u, brunt_closest *at);
+// Whether a point is certainly outside a body of the pair and farther from it than they push each other from: by the
+// nearest chord of its rim, within what curves bend from theirs.
+bool barrier_is_clear_of(const brunt_barrier *b, int32_t point, int32_t body, const brunt_barrier_pair *pair,
+                         const double *u);
 // Of a point's features that it is within, the nearest alone of each law counts, once, if nothing is nearer that it is
 // before; none that is beyond the distance.
 void barrier_settle_overlaps(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r);

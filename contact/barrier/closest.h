@@ -46,8 +46,8 @@ int brunt_closest_of_triangle(const double q[3], const double p[3][3], double *d
 void brunt_cubic_weights(const brunt_cubic *curve, double s, double weight[BRUNT_CUBIC_PLACES]);
 // The part of a curve that a point is nearest to: bits of its ends, as of an edge, and where; the distance.
 int brunt_closest_of_cubic(const double q[3], const double (*x)[3], const brunt_cubic *curve, double *s, double *d);
-// Whether a curve, whose first two places are its ends, is certainly farther from a point than `range` [m].
-bool brunt_cubic_is_beyond(const double q[3], const double (*x)[3], const brunt_cubic *curve, double range);
+// [m] What a curve, whose first two places are its ends, leaves its chord by at most.
+double brunt_cubic_bend(const double (*x)[3], const brunt_cubic *curve);
 // The distance of a point to a curve at its nearest place s, places the point's, then the curve's: above 0 to the right
 // of the way along the curve, or (`side` -1) to the left. The Hessian has the curve's own bend.
 void brunt_closest_cubic(const double q[3], const double (*x)[3], const brunt_cubic *curve, double s, int side,

@@ -57,16 +57,14 @@ static double least_along(const double q[3], const double (*x)[3], const brunt_c
 
 // The curve leaves its chord by 3 s (1 - s)^2 D1 + 3 s^2 (1 - s) D2, D1 and D2 being how far its inner points of Bezier
 // leave the chord's: by no more than 3/4 of the greater.
-bool brunt_cubic_is_beyond(const double q[3], const double (*x)[3], const brunt_cubic *curve, double range) {
-    static const double MORE = 1 + 1e-9; // rounding
-    double c[4][2], bend[2] = {0}, chord;
-    cubic_from(q, x, curve, c);
+double brunt_cubic_bend(const double (*x)[3], const brunt_cubic *curve) {
+    double c[4][2], bend[2] = {0};
+    cubic_from(x[0], x, curve, c);
     for (int a = 0; a < 2; a++) {
         const double first = (c[2][a] + c[3][a]) / 3, second = c[3][a] / 3;
         bend[0] += first * first, bend[1] += (first + second) * (first + second);
     }
-    brunt_closest_of_edge(q, x[0], x[1], &chord);
-    return chord - 0.75 * sqrt(fmax(bend[0], bend[1])) > MORE * range;
+    return 0.75 * sqrt(fmax(bend[0], bend[1]));
 }
 
 int brunt_closest_of_cubic(const double q[3], const double (*x)[3], const brunt_cubic *curve, double *s, double *d) {
