@@ -4,21 +4,26 @@
 #include <string.h>
 
 enum { LANES = BRUNT_DOUBLES };
+#ifdef BRUNT_FLOAT
+#define EIGHT_LANES (BRUNT_LANES == 16) // as preprocessors see it
+#else
+#define EIGHT_LANES (BRUNT_LANES == 8)
+#endif
 typedef brunt_constraint_block block;
 
 // ------------------------------------------------------------------------------------------ to lanes and back
 
-#if BRUNT_DOUBLES == 8
-typedef double quad __attribute__((vector_size(32)));
-typedef double quad_unaligned __attribute__((vector_size(32), aligned(8), may_alias));
-static inline quad quad_load(const double *from) { return *(const quad_unaligned *)from; }
-static inline void quad_store(double *to, quad a) { *(quad_unaligned *)to = a; }
-#endif
+typedef double quad __attribute__((vector_size(32), may_alias));
 
-// Three components of each lane from `from[l]`, behind which there is a fourth number that is read, too.
-BRUNT_INLINE void gather(const double *const from[LANES], doubles out[3]) {
-#if BRUNT_DOUBLES == 8
-#define BOTH(l) __builtin_shufflevector(quad_load(from[l]), quad_load(from[(l) + 4]), 0, 1, 2, 3, 4, 5, 6, 7)
+// Three components of each lane's place in an array of four numbers each.
+BRUNT_INLINE void gather(double (*from)[4], const int32_t at[LANES], doubles out[3]) {
+#if EIGHT_LANES
+    quad r[LANES];
+    for (int l = 0; l < LANES; l++) {
+        r[l] = *(const quad *)from[at[l]];
+        __asm__("" : "+v"(r[l])); // whole: gcc 12 reads them one by one
+    }
+#define BOTH(l) __builtin_shufflevector(r[l], r[(l) + 4], 0, 1, 2, 3, 4, 5, 6, 7)
     const doubles r0 = BOTH(0), r1 = BOTH(1), r2 = BOTH(2), r3 = BOTH(3);
 #undef BOTH
     const doubles low01 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14); // x0 x1 z0 z1 x4 x5 z4 z5
@@ -31,48 +36,51 @@ BRUNT_INLINE void gather(const double *const from[LANES], doubles out[3]) {
 #else
     double column[3][LANES] __attribute__((aligned(64)));
     for (int l = 0; l < LANES; l++)
-        for (int a = 0; a < 3; a++) column[a][l] = from[l][a];
+        for (int a = 0; a < 3; a++) column[a][l] = from[at[l]][a];
     for (int a = 0; a < 3; a++) out[a] = doubles_load(column[a]);
 #endif
 }
 
-// Four numbers of each lane to `to[l]`.
-BRUNT_INLINE void scatter(double *const to[LANES], doubles x, doubles y, doubles z, doubles w) {
-#if BRUNT_DOUBLES == 8
+// What each entry gives its node, of each lane: four numbers, even lanes first.
+typedef struct gifts {
+    _Alignas(64) double of[BRUNT_BLOCK_ENTRIES][LANES][4];
+} gifts;
+
+BRUNT_INLINE const double *gift_of(const gifts *g, int e, int l) {
+    return g->of[e][EIGHT_LANES ? (l & 1) * (LANES / 2) + l / 2 : l];
+}
+
+BRUNT_INLINE void give(gifts *g, int e, doubles x, doubles y, doubles z, doubles w) {
+#if EIGHT_LANES
     const doubles low = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14); // x0 y0 x2 y2 x4 y4 x6 y6
     const doubles high = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
     const doubles low_z = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
     const doubles high_z = __builtin_shufflevector(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
-    const doubles r02 = __builtin_shufflevector(low, low_z, 0, 1, 8, 9, 2, 3, 10, 11);
-    const doubles r46 = __builtin_shufflevector(low, low_z, 4, 5, 12, 13, 6, 7, 14, 15);
-    const doubles r13 = __builtin_shufflevector(high, high_z, 0, 1, 8, 9, 2, 3, 10, 11);
-    const doubles r57 = __builtin_shufflevector(high, high_z, 4, 5, 12, 13, 6, 7, 14, 15);
-#define HALF(r, k) __builtin_shufflevector(r, r, 4 * (k), 4 * (k) + 1, 4 * (k) + 2, 4 * (k) + 3)
-    quad_store(to[0], HALF(r02, 0)), quad_store(to[1], HALF(r13, 0));
-    quad_store(to[2], HALF(r02, 1)), quad_store(to[3], HALF(r13, 1));
-    quad_store(to[4], HALF(r46, 0)), quad_store(to[5], HALF(r57, 0));
-    quad_store(to[6], HALF(r46, 1)), quad_store(to[7], HALF(r57, 1));
-#undef HALF
+    doubles_store(g->of[e][0], __builtin_shufflevector(low, low_z, 0, 1, 8, 9, 2, 3, 10, 11));
+    doubles_store(g->of[e][2], __builtin_shufflevector(low, low_z, 4, 5, 12, 13, 6, 7, 14, 15));
+    doubles_store(g->of[e][4], __builtin_shufflevector(high, high_z, 0, 1, 8, 9, 2, 3, 10, 11));
+    doubles_store(g->of[e][6], __builtin_shufflevector(high, high_z, 4, 5, 12, 13, 6, 7, 14, 15));
 #else
-    for (int l = 0; l < LANES; l++) to[l][0] = x[l], to[l][1] = y[l], to[l][2] = z[l], to[l][3] = w[l];
+    for (int l = 0; l < LANES; l++)
+        g->of[e][l][0] = x[l], g->of[e][l][1] = y[l], g->of[e][l][2] = z[l], g->of[e][l][3] = w[l];
 #endif
 }
 
-BRUNT_INLINE void gather_v(const brunt_constraint_set *p, const block *b, int e, doubles out[3]) {
-    const double *from[LANES];
-    for (int l = 0; l < LANES; l++) from[l] = p->dof_node[b->dof_node[e][l]].v;
-    gather(from, out);
-}
-BRUNT_INLINE void gather_inverse(const brunt_constraint_set *p, const block *b, int e, doubles out[3]) {
-    const double *from[LANES];
-    for (int l = 0; l < LANES; l++) from[l] = p->dof_node[b->dof_node[e][l]].inverse;
-    gather(from, out);
-}
-BRUNT_INLINE void give(const brunt_constraint_set *p, const block *b, int e, doubles x, doubles y, doubles z,
-                       doubles w) {
-    double *to[LANES];
-    for (int l = 0; l < LANES; l++) to[l] = p->given[b->first[l] + e];
-    scatter(to, x, y, z, w);
+// In the order of the constraints, as sums are.
+static inline void hand_out(const brunt_constraint_set *p, const block *b, const gifts *g) {
+    if (!b->shared) {
+        for (int l = 0; l < LANES; l++)
+            for (int e = 0; e < b->count; e++) *(quad *)p->sum[b->dof_node[e][l]] += *(const quad *)gift_of(g, e, l);
+        return;
+    }
+    for (int l = 0; l < LANES; l++)
+        for (int e = 0; e < b->count; e++) {
+            const int32_t s = b->dof_node[e][l];
+            if (p->shared[s])
+                *(quad *)p->given[b->first[l] + e] = *(const quad *)gift_of(g, e, l);
+            else
+                *(quad *)p->sum[s] += *(const quad *)gift_of(g, e, l);
+        }
 }
 
 // ------------------------------------------------------------------------------------------ made
@@ -127,7 +135,7 @@ static void weigh(const brunt_constraint_set *p, block *b) {
     for (int e = 0; e < b->count; e++) {
         doubles J[3], inverse[3];
         transpose(b, e, b->n, J);
-        gather_inverse(p, b, e, inverse);
+        gather(p->inverse, b->dof_node[e], inverse);
         for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
     }
     const doubles zero = {0};
@@ -156,11 +164,23 @@ BRUNT_INLINE doubles lever(const brunt_constraint_set *p, const block *b, int e)
 
 BRUNT_INLINE doubles magnitude(doubles a) { return doubles_max(a, -a); }
 
-void brunt_block_share(const brunt_constraint_set *p, const block *b) {
+void brunt_block_share(const brunt_constraint_set *p, block *b) {
+    gifts g;
+    b->shared = false;
     for (int e = 0; e < b->count; e++) {
         const doubles share = magnitude(b->weight[e]) + lever(p, b, e);
-        give(p, b, e, share, share, share, b->scale);
+        give(&g, e, share, share, share, b->scale);
     }
+    for (int l = 0; l < LANES; l++)
+        for (int e = 0; e < b->count; e++) {
+            const int32_t s = b->dof_node[e][l];
+            const double *share = gift_of(&g, e, l);
+            if (p->shared[s])
+                memcpy(p->given[b->first[l] + e], share, sizeof g.of[e][0]);
+            else
+                p->load[s][0] += share[0] * share[3];
+            b->shared = b->shared || p->shared[s];
+        }
 }
 
 void brunt_block_sum_rows(const brunt_constraint_set *p, block *b) {
@@ -169,10 +189,10 @@ void brunt_block_sum_rows(const brunt_constraint_set *p, block *b) {
     for (int e = 0; e < b->count; e++) {
         const doubles most = magnitude(b->weight[e]) + lever(p, b, e);
         doubles inverse[3], load, load_t;
-        gather_inverse(p, b, e, inverse);
+        gather(p->inverse, b->dof_node[e], inverse);
         for (int l = 0; l < LANES; l++) {
-            const brunt_dof_node *node = &p->dof_node[b->dof_node[e][l]];
-            load[l] = node->load, load_t[l] = node->load_t;
+            const double *node = p->load[b->dof_node[e][l]];
+            load[l] = node[0], load_t[l] = node[1];
         }
         for (int a = 0; a < 3; a++) {
             along[a] += most * load * inverse[a];
@@ -194,10 +214,10 @@ void brunt_block_sum_rows(const brunt_constraint_set *p, block *b) {
 static inline void relative_velocity(const brunt_constraint_set *p, const block *b, doubles u[3]) {
     const doubles zero = {0};
     doubles v[3];
-    gather_v(p, b, 0, v);
+    gather(p->now, b->dof_node[0], v);
     for (int a = 0; a < 3; a++) u[a] = zero + b->weight[0] * v[a];
     for (int e = 1; e < b->count; e++) {
-        gather_v(p, b, e, v);
+        gather(p->now, b->dof_node[e], v);
         const doubles rise = b->facet[0] * v[0] + b->facet[1] * v[1] + b->facet[2] * v[2];
         for (int a = 0; a < 3; a++) u[a] += b->weight[e] * v[a] + rise * b->height_gradient[e - 1][a];
     }
@@ -229,6 +249,7 @@ static inline doubles rub(block *b, const doubles u[3], doubles along, doubles J
 double brunt_block_solve(const brunt_constraint_set *p, block *b) {
     const doubles zero = {0};
     doubles u[3], J[3], along = {0};
+    gifts g;
     relative_velocity(p, b, u);
     for (int a = 0; a < 3; a++) along += u[a] * b->n[a];
     const doubles asked = b->normal_impulse + (b->target - along) * b->unit;
@@ -241,8 +262,9 @@ double brunt_block_solve(const brunt_constraint_set *p, block *b) {
     for (int e = 0; e < b->count; e++) {
         doubles out[3];
         transpose(b, e, J, out);
-        give(p, b, e, out[0], out[1], out[2], out[2]); // whatever the fourth is: beside zeros gcc 12 writes one by one
+        give(&g, e, out[0], out[1], out[2], out[2]); // whatever the fourth is: beside zeros gcc 12 writes one by one
     }
+    hand_out(p, b, &g);
     double greatest = 0;
     for (int l = 0; l < LANES; l++) greatest = changed[l] > greatest ? changed[l] : greatest;
     return greatest;

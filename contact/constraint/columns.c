@@ -1,4 +1,4 @@
-// Which points press on a degree-of-freedom node: the transpose of the points' entries.
+// Which points press on a shared degree-of-freedom node: the transpose of the points' entries.
 //
 // Groups of points are counted and filled at once, each to its own places. Whatever their number, a column is in the
 // order of the points.
@@ -28,7 +28,7 @@ static void count_entries(void *context, int64_t begin, int64_t end, int worker)
             const brunt_constraint *constraint = &p->constraint[k];
             const int32_t each = constraint->friction_point ? 2 : 1;
             for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++)
-                at[p->entry[e].dof_node] += each;
+                if (p->shared[p->entry[e].dof_node]) at[p->entry[e].dof_node] += each;
         }
     }
 }
@@ -56,6 +56,7 @@ static void fill_columns(void *context, int64_t begin, int64_t end, int worker) 
         for (int32_t k = (int32_t)g * size; k < (g + 1) * size && k < p->constraint_count; k++) {
             const brunt_constraint *constraint = &p->constraint[k];
             for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+                if (!p->shared[p->entry[e].dof_node]) continue;
                 int32_t *next = &at[p->entry[e].dof_node];
                 p->column[(*next)++] = (struct brunt_constraint_column){k, e};
                 if (constraint->friction_point)

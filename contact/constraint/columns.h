@@ -3,6 +3,6 @@
 
 #include "contact/constraint/constraint.h"
 
-// Makes set->column: entries by node, in the order of the points, each with that of its friction point behind it; and
-// room for what they give. BRUNT_OK, or BRUNT_FAILED: out of memory.
+// Makes set->column: entries by node that is shared, in the order of the points, each with that of its friction point
+// behind it; and room for what they give. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_constraints_make_columns(brunt_constraint_set *set, int threads, brunt_timer *timer, brunt_error *error);

@@ -34,10 +34,8 @@ typedef struct brunt_dof_node {
     double v[3], old[3]; // [m/s] now; before the forces of this step
     double inverse[3];   // [1/kg] by component; 0: infinite mass
     double impulse[3];   // [N s] received in all
-    // [kg] sum of |weight| effective mass of the constraints on it: what they push with, and what they rub with
-    double load, load_t;
-    bool crossed; // some push along what others rub along: both loads are of the greater weights
-    bool angular; // v[0] is an angular velocity: entries have levers in place of weights
+    bool crossed;        // some push along what others rub along: both loads are of the greater weights
+    bool angular;        // v[0] is an angular velocity: entries have levers in place of weights
 } brunt_dof_node;
 
 typedef struct brunt_constraint_entry {
@@ -101,7 +99,27 @@ typedef struct brunt_constraint_set {
     brunt_dof_node *dof_node;
     size_t dof_node_capacity;
     int32_t dof_node_count;
-    // Which points press on a degree-of-freedom node: their entries by node, in the order of the points.
+    // What sweeps look at and change of each degree-of-freedom node, close together; the nodes have it when all is
+    // done. A fourth number does not count.
+    double (*now)[4];      // [m/s]; NULL but while a set is solved
+    double (*inverse)[4];  // [1/kg]
+    double (*received)[4]; // [N s] in all
+    double (*sum)[4];      // [N s] of a sweep so far, unless the node is shared
+    double (*load)[2];  // [kg] sum of |weight| effective mass of its constraints: what they push and what they rub with
+    double (*state)[4]; // room for `now`
+    size_t state_capacity, inverse_capacity, received_capacity, sum_capacity, load_capacity;
+    // Chunks of points are swept over in so many parts, each by one thread and in the order of the points, so that what
+    // they give to nodes of one part alone is added up at once (parts.h). 0: every node is shared.
+    int parts;
+    int32_t *part_of; // of each chunk
+    struct brunt_chunk_place {
+        double x; // [m]
+        int32_t chunk;
+    } * chunk_place; // while chunks are divided
+    uint8_t *marks;  // of each part and node: some of its constraints are in that part
+    uint8_t *shared; // of each node: several parts have its constraints; what they give is added up by its column
+    size_t part_of_capacity, chunk_place_capacity, marks_capacity, shared_capacity;
+    // Which points press on a shared degree-of-freedom node: their entries by node, in the order of the points.
     struct brunt_constraint_column {
         int32_t constraint, entry; // whose friction point has an entry of its own, behind it
     } * column;
@@ -110,11 +128,9 @@ typedef struct brunt_constraint_set {
     size_t column_first_capacity;
     int32_t *column_at; // of each group of points and node, while columns are filled: the next one
     size_t column_at_capacity;
-    double (*begun)[3]; // [m/s] of each node before the first sweep
-    size_t begun_capacity;
-    // [N s] of each entry: what the sweep gives its node. A fourth number does not count, so that they are added as
-    // one. Before the sweeps: the share of the constraint that the node gets of its pushes, of its friction, the
-    // greater of both, and its effective mass.
+    // [N s] of each entry on a shared node: what the sweep gives it. A fourth number does not count, so that they are
+    // added as one. Before the sweeps: the share of the constraint that the node gets of its pushes, of its friction,
+    // the greater of both, and its effective mass.
     double (*given)[4];
     size_t given_capacity;
     struct brunt_constraint_block *block; // of so many constraints at a time, where they are alike (block.h)
@@ -171,11 +187,11 @@ void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_cons
                                double u[3]);
 // What friction does to a constraint with the normal impulse it has, as far as it is concerned; added to `rub`.
 void brunt_constraint_rub(const brunt_constraint_set *set, brunt_constraint *constraint, double rub[3]);
-// Makes `given` of a constraint's entries: an impulse where it pushes and one where it rubs, which without a friction
-// point is part of the first.
+// Gives a constraint's nodes an impulse where it pushes and one where it rubs, which without a friction point is part
+// of the first: of shared nodes `given`, of the others `sum`.
 void brunt_constraint_give(const brunt_constraint_set *set, const brunt_constraint *constraint, const double push[3],
                            const double rub[3]);
-// Gives degree-of-freedom nodes the impulses in `given`.
+// Gives degree-of-freedom nodes the impulses in `given` and `sum`, while a set is solved.
 void brunt_constraints_apply(brunt_constraint_set *set, int threads, brunt_timer *timer);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED: out of memory.

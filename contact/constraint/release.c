@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/vector.h"
+#include "contact/constraint/parts.h"
 
 enum { GRAIN = 128, ROUNDS = 16 };
 static const double LEAST_PUSH = 1e-9;   // of what would stop it
@@ -38,7 +39,7 @@ static double pressed(const brunt_constraint_set *p, const brunt_constraint *c) 
         const brunt_constraint_entry *entry = &p->entry[e];
         const brunt_dof_node *node = &p->dof_node[entry->dof_node];
         double by[3];
-        for (int a = 0; a < 3; a++) by[a] = node->impulse[a] * node->inverse[a];
+        for (int a = 0; a < 3; a++) by[a] = p->received[entry->dof_node][a] * node->inverse[a];
         const double rise = dot(c->facet, by);
         for (int a = 0; a < 3; a++) sum += c->n[a] * (entry->weight[a] * by[a] + rise * entry->height_gradient[a]);
     }
@@ -187,6 +188,7 @@ int brunt_constraints_release(brunt_constraint_set *p, int threads, brunt_timer 
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
     brunt_parallel(threads, chunks, 1, note_taken, p, timer);
     if (!account_touches(p)) return BRUNT_OK;
+    if (brunt_constraints_share_all(p, threads, timer, error)) return BRUNT_FAILED;
     double held = 0;
     for (int round = 0; round < ROUNDS; round++) {
         const double left = sum_left(p);

@@ -7,10 +7,10 @@
 #include "base/array.h"
 #include "base/parallel.h"
 #include "contact/constraint/block.h"
-#include "contact/constraint/columns.h"
+#include "contact/constraint/parts.h"
 #include "contact/constraint/release.h"
 
-enum { GRAIN = 128, AHEAD = 40 }; // AHEAD: entries that are fetched before a node adds them up
+enum { GRAIN = BRUNT_CONSTRAINT_GRAIN, AHEAD = 40 }; // AHEAD: entries that are fetched before a node adds them up
 _Static_assert(GRAIN % BRUNT_DOUBLES == 0, "a chunk is whole blocks");
 static const double DIVERGES = 10; // times the correction of the first sweep is left
 
@@ -22,13 +22,18 @@ static inline quad load_quad(const double *from) {
     return v;
 }
 
+// Of a degree-of-freedom node, before the forces or as it is now.
+static inline const double *velocity_of(const brunt_constraint_set *p, int32_t node, bool old) {
+    if (old) return p->dof_node[node].old;
+    return p->now ? p->now[node] : p->dof_node[node].v;
+}
+
 // Of what does not turn, with the weights of `entry` and the `count` - 1 after it.
 static inline quad plain_velocity(const brunt_constraint_set *p, const brunt_constraint_entry *entry, int32_t count,
                                   bool old) {
     quad u = {0};
     for (const brunt_constraint_entry *end = entry + count; entry < end; entry++) {
-        const brunt_dof_node *node = &p->dof_node[entry->dof_node];
-        u += load_quad(entry->weight) * load_quad(old ? node->old : node->v);
+        u += load_quad(entry->weight) * load_quad(velocity_of(p, entry->dof_node, old));
     }
     return u;
 }
@@ -38,7 +43,7 @@ static void turning_velocity(const brunt_constraint_set *p, const brunt_constrai
     for (int a = 0; a < 3; a++) u[a] = -constraint->plane[a];
     for (int32_t e = first; e < first + constraint->count; e++) {
         const brunt_constraint_entry *entry = &p->entry[e];
-        const double *v = old ? p->dof_node[entry->dof_node].old : p->dof_node[entry->dof_node].v;
+        const double *v = velocity_of(p, entry->dof_node, old);
         double rise = constraint->facet[0] * v[0] + constraint->facet[1] * v[1] + constraint->facet[2] * v[2];
         for (int a = 0; a < 3; a++) u[a] += entry->weight[a] * v[a] + rise * entry->height_gradient[a];
     }
@@ -71,7 +76,10 @@ static void apply_transpose(const brunt_constraint *constraint, const brunt_cons
 void brunt_constraint_give(const brunt_constraint_set *p, const brunt_constraint *constraint, const double push[3],
                            const double rub[3]) {
     for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
-        apply_transpose(constraint, &p->entry[e], push, p->given[e]);
+        const int32_t s = p->entry[e].dof_node;
+        double out[3];
+        apply_transpose(constraint, &p->entry[e], push, p->shared[s] ? p->given[e] : out);
+        for (int a = 0; a < 3 && !p->shared[s]; a++) p->sum[s][a] += out[a];
         if (constraint->friction_point)
             apply_transpose(constraint, &p->entry[e + constraint->count], rub, p->given[e + constraint->count]);
     }
@@ -79,7 +87,12 @@ void brunt_constraint_give(const brunt_constraint_set *p, const brunt_constraint
 
 static int reserve_sweeps(brunt_constraint_set *p, brunt_error *error) {
     const size_t points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
-    return BRUNT_CAPACITY(p->begun, (size_t)p->dof_node_count + 1, 0, "nodes that contact moves", error) ||
+    const size_t nodes = (size_t)p->dof_node_count + 1;
+    return BRUNT_CAPACITY(p->state, nodes, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->inverse, nodes, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->received, nodes, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->sum, nodes, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->load, nodes, 0, "nodes that contact moves", error) ||
                    BRUNT_CAPACITY(p->block, points / BRUNT_DOUBLES + 1, 0, "blocks of contact points", error) ||
                    BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error)
                ? BRUNT_FAILED
@@ -106,6 +119,7 @@ static void weigh_constraint(const brunt_constraint_set *p, brunt_constraint *co
     constraint->scale = alone > 0 ? 1 / alone : 0;
 }
 
+// With the blocks, where constraints are alike.
 static void weigh_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
@@ -137,7 +151,11 @@ static void share_constraint(const brunt_constraint_set *p, const brunt_constrai
         const double push = share_of(p, &p->entry[e]);
         const double rub = constraint->friction_point ? share_of(p, &p->entry[e + constraint->count]) : push;
         const double share[4] = {push, rub, fmax(push, rub), constraint->scale};
-        memcpy(p->given[e], share, sizeof share);
+        const int32_t s = p->entry[e].dof_node;
+        if (p->shared[s])
+            memcpy(p->given[e], share, sizeof share);
+        else
+            p->load[s][0] += push * constraint->scale;
     }
 }
 
@@ -182,6 +200,20 @@ static bool crosses(const brunt_constraint_set *p, const brunt_dof_node *node, i
     return crossed;
 }
 
+// As before the first sweep.
+static void begin_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
+        const brunt_dof_node *node = &p->dof_node[s];
+        for (int a = 0; a < 3; a++)
+            p->now[s][a] = node->v[a], p->inverse[s][a] = node->inverse[a], p->received[s][a] = node->impulse[a];
+        p->now[s][3] = p->inverse[s][3] = p->received[s][3] = 0;
+        memset(p->sum[s], 0, sizeof *p->sum);
+        memset(p->load[s], 0, sizeof *p->load);
+    }
+}
+
 // What constraints with friction points push and rub with are different weights. Where the two do not cross, each has
 // its own load; else both have the greater.
 static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -189,26 +221,32 @@ static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         brunt_dof_node *node = &p->dof_node[s];
-        const int32_t first = p->column_first[s], last = p->column_first[s + 1];
         double push = 0, rub = 0, both = 0;
-        memcpy(p->begun[s], node->v, sizeof p->begun[s]);
+        if (!p->shared[s]) {
+            p->load[s][1] = p->load[s][0];
+            node->crossed = false;
+            continue;
+        }
+        const int32_t first = p->column_first[s], last = p->column_first[s + 1];
         node->crossed = crosses(p, node, first, last);
         for (int32_t q = first; q < last; q++) {
             const double *share = p->given[p->column[q].entry], scale = share[3];
             push += share[0] * scale, rub += share[1] * scale, both += share[2] * scale;
             if (p->friction_point_count && p->constraint[p->column[q].constraint].friction_point) q++;
         }
-        node->load = node->crossed ? both : push, node->load_t = node->crossed ? both : rub;
+        p->load[s][0] = node->crossed ? both : push, p->load[s][1] = node->crossed ? both : rub;
     }
 }
 
 // The part of an angular velocity in the row sums of an entry that pushes and of one that rubs.
-static void add_levers(const brunt_dof_node *s, const brunt_constraint_entry *own, const brunt_constraint_entry *rubs,
-                       double along[3], double across[3]) {
+static void add_levers(const brunt_constraint_set *p, const brunt_constraint_entry *own,
+                       const brunt_constraint_entry *rubs, double along[3], double across[3]) {
+    const brunt_dof_node *s = &p->dof_node[own->dof_node];
+    const double *load = p->load[own->dof_node];
     for (int a = 0; a < 3; a++) {
         const double push = fabs(own->height_gradient[a]), rub = fabs(rubs->height_gradient[a]), both = fmax(push, rub);
-        along[a] += (s->crossed ? both : push) * s->load * s->inverse[0];
-        across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[0];
+        along[a] += (s->crossed ? both : push) * load[0] * s->inverse[0];
+        across[a] += (s->crossed ? both : rub) * load[1] * s->inverse[0];
     }
 }
 
@@ -227,15 +265,16 @@ static void sum_row(const brunt_constraint_set *p, brunt_constraint *constraint)
         const brunt_constraint_entry *own = &p->entry[e],
                                      *rubs = own + (constraint->friction_point ? constraint->count : 0);
         if (s->angular) {
-            add_levers(s, own, rubs, along, across);
+            add_levers(p, own, rubs, along, across);
             continue;
         }
+        const double *load = p->load[own->dof_node];
         const double *weight = own->weight, *other = rubs->weight, turn = lever(p, own->height_gradient),
                      rub_turn = lever(p, rubs->height_gradient);
         for (int a = 0; a < 3; a++) {
             const double push = fabs(weight[a]) + turn, rub = fabs(other[a]) + rub_turn, both = fmax(push, rub);
-            along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
-            across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
+            along[a] += (s->crossed ? both : push) * load[0] * s->inverse[a];
+            across[a] += (s->crossed ? both : rub) * load[1] * s->inverse[a];
         }
     }
     for (int a = 0; a < 3; a++) {
@@ -361,31 +400,35 @@ static void finish_chunks(void *context, int64_t begin, int64_t end, int worker)
 }
 
 // The velocities that go with the impulses the next sweep begins with.
-static void carry_on(double momentum, brunt_dof_node *dof_node, struct brunt_dof_past *past) {
+static void carry_on(double momentum, double now[3], double received[3], struct brunt_dof_past *past) {
     for (int a = 0; a < 3; a++) {
-        const double v = dof_node->v[a], impulse = dof_node->impulse[a];
-        dof_node->v[a] += momentum * (v - past->v[a]);
-        dof_node->impulse[a] += momentum * (impulse - past->impulse[a]);
+        const double v = now[a], impulse = received[a];
+        now[a] += momentum * (v - past->v[a]);
+        received[a] += momentum * (impulse - past->impulse[a]);
         past->v[a] = v, past->impulse[a] = impulse;
     }
+}
+
+static quad column_sum(const brunt_constraint_set *p, int64_t s) {
+    const int32_t all = p->column_first[p->dof_node_count];
+    quad sum = {0};
+    for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
+        if (q + AHEAD < all) __builtin_prefetch(p->given[p->column[q + AHEAD].entry]);
+        sum += load_quad(p->given[p->column[q].entry]);
+    }
+    return sum;
 }
 
 static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    const int32_t all = p->column_first[p->dof_node_count];
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
-        brunt_dof_node *dof_node = &p->dof_node[s];
-        quad sum = {0};
-        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
-            if (q + AHEAD < all) __builtin_prefetch(p->given[p->column[q + AHEAD].entry]);
-            sum += load_quad(p->given[p->column[q].entry]);
-        }
-        for (int a = 0; a < 3; a++) {
-            dof_node->impulse[a] += sum[a];
-            dof_node->v[a] += sum[a] * dof_node->inverse[a];
-        }
-        if (p->accelerated) carry_on(p->momentum, dof_node, &p->dof_past[s]);
+        const quad sum = p->shared[s] ? column_sum(p, s) : load_quad(p->sum[s]), zero = {0};
+        const quad now = load_quad(p->now[s]) + sum * load_quad(p->inverse[s]),
+                   received = load_quad(p->received[s]) + sum;
+        memcpy(p->sum[s], &zero, sizeof zero);
+        memcpy(p->now[s], &now, sizeof now), memcpy(p->received[s], &received, sizeof received);
+        if (p->accelerated) carry_on(p->momentum, p->now[s], p->received[s], &p->dof_past[s]);
     }
 }
 
@@ -439,8 +482,8 @@ static int begin_acceleration(brunt_constraint_set *p, brunt_error *error) {
     p->momentum = 0;
     memset(p->point_past, 0, points * sizeof *p->point_past);
     for (size_t s = 0; s < dofs; s++) {
-        memcpy(p->dof_past[s].v, p->dof_node[s].v, sizeof p->dof_past[s].v);
-        memcpy(p->dof_past[s].impulse, p->dof_node[s].impulse, sizeof p->dof_past[s].impulse);
+        memcpy(p->dof_past[s].v, p->now[s], sizeof p->dof_past[s].v);
+        memcpy(p->dof_past[s].impulse, p->received[s], sizeof p->dof_past[s].impulse);
     }
     return BRUNT_OK;
 }
@@ -462,7 +505,7 @@ void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *
     brunt_parallel(threads, (p->dof_node_count + GRAIN - 1) / GRAIN, 1, move_dof_nodes, p, timer);
 }
 
-// As before the first sweep.
+// Constraints have given nothing yet.
 static void take_back(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->constraint_count; k++) {
         brunt_constraint *constraint = &p->constraint[k];
@@ -470,9 +513,14 @@ static void take_back(brunt_constraint_set *p) {
         memset(constraint->friction_impulse, 0, sizeof constraint->friction_impulse);
         if (k % BRUNT_DOUBLES == 0 && block_at(p, k)) brunt_block_take_back(block_at(p, k));
     }
-    for (int32_t s = 0; s < p->dof_node_count; s++) {
-        memcpy(p->dof_node[s].v, p->begun[s], sizeof p->begun[s]);
-        memset(p->dof_node[s].impulse, 0, sizeof p->dof_node[s].impulse);
+}
+
+static void end_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
+        memcpy(p->dof_node[s].v, p->now[s], sizeof p->dof_node[s].v);
+        memcpy(p->dof_node[s].impulse, p->received[s], sizeof p->dof_node[s].impulse);
     }
 }
 
@@ -480,14 +528,14 @@ static void take_back(brunt_constraint_set *p) {
 static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
                  bool *converges, brunt_error *error) {
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
-    brunt_parallel(threads, chunks, 1, share_constraints, p, timer);
+    brunt_constraints_over_parts(p, threads, share_constraints, timer);
     brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double start = 0, first = 0, greatest = INFINITY, weight = 1;
     if (p->accelerated && begin_acceleration(p, error)) return BRUNT_FAILED;
     p->sweeps = 0;
     while (p->sweeps < sweeps && !(greatest <= tolerance * first)) {
-        brunt_parallel(threads, chunks, 1, solve_chunks, p, timer);
+        brunt_constraints_over_parts(p, threads, solve_chunks, timer);
         p->sweeps++;
         greatest = 0;
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
@@ -506,17 +554,22 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     bool converges;
     p->sweeps = 0, p->levers = false;
     if (!p->constraint_count) return BRUNT_OK;
-    if (brunt_constraints_make_columns(p, threads, timer, error) || reserve_sweeps(p, error)) return BRUNT_FAILED;
-    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
+    if (brunt_constraints_make_parts(p, threads, timer, error) || reserve_sweeps(p, error)) return BRUNT_FAILED;
+    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
+    p->now = p->state;
+    brunt_parallel(threads, groups, 1, begin_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
     if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     if (!converges) {
         take_back(p);
+        brunt_parallel(threads, groups, 1, begin_nodes, p, timer);
         p->levers = true;
         if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     }
     brunt_parallel(threads, chunks, 1, finish_chunks, p, timer);
     if (p->gives_back && brunt_constraints_release(p, threads, timer, error)) return BRUNT_FAILED;
     account_constraints(p);
+    brunt_parallel(threads, groups, 1, end_nodes, p, timer);
+    p->now = NULL;
     return BRUNT_OK;
 }

@@ -53,7 +53,7 @@ typedef struct master_list {
 // Of the nodes of a surface.
 typedef struct node_candidates {
     uint8_t *count;             // of each node ...
-    facet_candidate *candidate; // ... in its BRUNT_MAX_CANDIDATES places
+    facet_candidate *candidate; // ... of which the first of all nodes come first, then the second
     master_list *masters;
     int masters_count;
     int32_t *dof_of; // of each node: its degree-of-freedom node, -1

@@ -70,6 +70,12 @@ static void keep_master(brunt_node_to_facet *f, const brunt_contact_surface *s, 
     brunt_node_to_facet_master(s, h, x, &of->master[of->count++]);
 }
 
+// Place `q` of node n: the first places of all nodes, then the second ones, which few nodes need.
+static facet_candidate *node_candidate_of(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
+                                          int32_t q) {
+    return &f->nodes.candidate[(int64_t)q * s->node_count + n];
+}
+
 static void find_node_candidates(const search_job *j, int k, int32_t n, int worker) {
     const brunt_contact_context *m = j->m;
     brunt_node_to_facet *f = j->f;
@@ -110,7 +116,7 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET))
             continue;
         if (h->feature.any) keep_master(f, s, h, s->x[n], worker);
-        f->nodes.candidate[BRUNT_MAX_CANDIDATES * n + kept++] = *h;
+        *node_candidate_of(f, s, n, kept++) = *h;
     }
     f->nodes.count[n] = (uint8_t)kept;
 }
@@ -187,7 +193,7 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
     for (int32_t n = (int32_t)begin; n < end; n++) {
         int32_t at = f->nodes.first[2 * n], entry = f->nodes.first[2 * n + 1];
         for (int32_t q = 0; q < f->nodes.count[n]; q++, at++) {
-            const facet_candidate *h = &f->nodes.candidate[BRUNT_MAX_CANDIDATES * n + q];
+            const facet_candidate *h = node_candidate_of(f, s, n, q);
             brunt_constraint *constraint = &j->constraints->constraint[at];
             brunt_master plain;
             const brunt_master *master = h->feature.any ? kept_master(f, h) : &plain;
@@ -209,7 +215,7 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
 }
 
 static void begin_dof_node(const brunt_contact_surface *s, int32_t n, brunt_dof_node *dof_node) {
-    *dof_node = (brunt_dof_node){.load = 0};
+    *dof_node = (brunt_dof_node){.crossed = false};
     memcpy(dof_node->v, s->v[n], sizeof dof_node->v);
     memcpy(dof_node->old, s->old[n], sizeof dof_node->old);
     memcpy(dof_node->inverse, s->inverse[n], sizeof dof_node->inverse);
@@ -241,7 +247,7 @@ static void count_node_constraints(void *context, int64_t begin, int64_t end, in
     for (int32_t n = (int32_t)begin; n < end; n++) {
         int32_t entries = 0;
         for (int32_t q = 0; q < f->nodes.count[n]; q++) {
-            const facet_candidate *h = &f->nodes.candidate[BRUNT_MAX_CANDIDATES * n + q];
+            const facet_candidate *h = node_candidate_of(f, s, n, q);
             const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
             const int32_t *node = feature ? feature->node : s->face[h->face];
             const int count = feature ? feature->count : brunt_face_corners(s->face[h->face]);

@@ -155,7 +155,7 @@ END_TEST
 
 // Nodes above a sheet of quadrilaterals, each on one of them and pressed against it at an angle; all share corners with
 // their neighbours. `alone`: one in eight has a sixth entry, of weight 0, so that they are in no block.
-enum { ROW = 9, ABOVE = 67 };
+enum { ROW = 9, ABOVE = 67, ABOVE_EACH = 16 };
 static double some(int k) { return 0.5 + 0.5 * sin(7.3 * k + 1); }
 static void make_sheet(brunt_constraint_set *p, brunt_impulse_account *account, double height, bool alone) {
     memset(p, 0, sizeof *p);
@@ -227,6 +227,72 @@ START_TEST(blocks_do_as_one_alone) {
         ck_assert(slips > 0 && sticks + lifts > 0);
         check_same(&account[0].friction_loss, &account[1].friction_loss, 1, 1);
         check_same(&account[0].normal_loss, &account[1].normal_loss, 1, 1);
+        brunt_constraints_free(&one), brunt_constraints_free(&many);
+    }
+}
+END_TEST
+
+// Points above the facets of a sheet one after the other, so many chunks of them that several threads share them by
+// rows of the sheet: what is above is of one part, and the nodes between two parts are shared. Every other point has
+// taken something that is to be given back.
+enum { MANY = 2 * ABOVE_EACH * ROW * ROW, SHEET = (ROW + 1) * (ROW + 1) };
+static void make_crowd(brunt_constraint_set *p, brunt_impulse_account *account, brunt_touch_energy *touch) {
+    memset(p, 0, sizeof *p), memset(account, 0, sizeof *account);
+    for (int i = 0; i < SHEET + MANY; i++) {
+        ck_assert_int_eq(brunt_constraints_dof_node(p, NULL), i);
+        brunt_dof_node *s = &p->dof_node[i];
+        for (int a = 0; a < 3; a++)
+            s->v[a] = s->old[a] = i < SHEET ? 0.1 * some(a + i) : some(3 * i + a) - (a == 2), s->inverse[a] = some(i);
+    }
+    for (int k = 0; k < MANY; k++) {
+        const int facet = k / ABOVE_EACH % (ROW * ROW), x = facet % ROW, y = facet / ROW;
+        const double u = some(2 * k), v = some(5 * k), side[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+        ck_assert_int_eq(brunt_constraints_add(p, NULL), k);
+        brunt_constraint *point = &p->constraint[k];
+        const double tilt = 0.2 * some(k), n[3] = {0, sin(tilt), cos(tilt)};
+        memcpy(point->facet, n, sizeof n), memcpy(point->n, n, sizeof n);
+        point->x[0] = 0.1 * x, point->x[1] = y, point->account = account, point->sign = 1, point->turns = true;
+        point->friction = k % 5 ? 0.3 : 0, point->gap = 1;
+        touch[k] = (brunt_touch_energy){.held = k % 2 ? 0.01 * some(k) : 0}, point->touch = &touch[k];
+        ck_assert_int_ge(brunt_constraints_entry(p, SHEET + k, 1, NULL), 0);
+        for (int c = 0; c < 4; c++) {
+            const int corner = (y + c / 2) * (ROW + 1) + x + (c == 1 || c == 2);
+            const int32_t at = brunt_constraints_entry(p, corner, -side[c], NULL);
+            p->entry[at].height_gradient[0] = 0.01 * (some(c + k) - 0.5);
+        }
+    }
+    p->gives_back = true, p->leap = 10, p->shallow = 1;
+}
+
+// What parts the points are in changes nothing, to the bit.
+START_TEST(parts_change_no_sum) {
+    static brunt_touch_energy touch[2][MANY];
+    static const int threads[] = {2, 3, 5};
+    for (size_t i = 0; i < sizeof threads / sizeof threads[0]; i++) {
+        brunt_constraint_set one, many;
+        brunt_impulse_account account[2];
+        brunt_timer timer = {0};
+        make_crowd(&one, &account[0], touch[0]), make_crowd(&many, &account[1], touch[1]);
+        int shared = 0, lifts = 0;
+        many.gives_back = i != 1; // what gives back ends with everything shared
+        one.gives_back = i != 1;
+        ck_assert_int_eq(brunt_constraints_solve(&one, 8, 1e-9, 1, &timer, NULL), BRUNT_OK);
+        ck_assert_int_eq(brunt_constraints_solve(&many, 8, 1e-9, threads[i], &timer, NULL), BRUNT_OK);
+        for (int s = 0; s < many.dof_node_count; s++) {
+            shared += many.shared[s];
+            ck_assert_mem_eq(one.dof_node[s].v, many.dof_node[s].v, sizeof one.dof_node[s].v);
+            ck_assert_mem_eq(one.dof_node[s].impulse, many.dof_node[s].impulse, sizeof one.dof_node[s].impulse);
+        }
+        for (int k = 0; k < MANY; k++) {
+            lifts += !(one.constraint[k].normal_impulse > 0);
+            ck_assert(one.constraint[k].normal_impulse == many.constraint[k].normal_impulse);
+            ck_assert(one.constraint[k].row_sum == many.constraint[k].row_sum);
+            ck_assert(touch[0][k].held == touch[1][k].held);
+        }
+        printf("  %d threads: %d parts, %d of %d nodes of the sheet shared\n", threads[i], many.parts, shared, SHEET);
+        if (i == 1) ck_assert(many.parts == threads[i] && shared > ROW && shared < SHEET);
+        ck_assert(lifts > 0);
+        ck_assert_mem_eq(account[0].impulse, account[1].impulse, sizeof account[0].impulse);
         brunt_constraints_free(&one), brunt_constraints_free(&many);
     }
 }
@@ -367,6 +433,7 @@ int main(void) {
     ADD(more_sweeps_leave_less);
     ADD(no_memory_is_told);
     ADD(columns_are_in_the_order_of_the_points);
+    ADD(parts_change_no_sum);
     ADD(slivers_do_not_run_away);
     ADD(blocks_do_as_one_alone);
     ADD(a_tighter_tolerance_leaves_less);
