@@ -67,14 +67,14 @@ BRUNT_INLINE void give(gifts *g, int e, doubles x, doubles y, doubles z, doubles
 }
 
 // In the order of the constraints, as sums are.
-static inline void hand_out(const brunt_constraint_set *p, const block *b, const gifts *g) {
+BRUNT_INLINE void hand_out(const brunt_constraint_set *p, const block *b, int count, const gifts *g) {
     if (!b->shared) {
         for (int l = 0; l < LANES; l++)
-            for (int e = 0; e < b->count; e++) *(quad *)p->sum[b->dof_node[e][l]] += *(const quad *)gift_of(g, e, l);
+            for (int e = 0; e < count; e++) *(quad *)p->sum[b->dof_node[e][l]] += *(const quad *)gift_of(g, e, l);
         return;
     }
     for (int l = 0; l < LANES; l++)
-        for (int e = 0; e < b->count; e++) {
+        for (int e = 0; e < count; e++) {
             const int32_t s = b->dof_node[e][l];
             if (p->shared[s])
                 *(quad *)p->given[b->first[l] + e] = *(const quad *)gift_of(g, e, l);
@@ -211,13 +211,13 @@ void brunt_block_sum_rows(const brunt_constraint_set *p, block *b) {
 
 // ------------------------------------------------------------------------------------------ solved
 
-static inline void relative_velocity(const brunt_constraint_set *p, const block *b, doubles u[3]) {
+BRUNT_INLINE void relative_velocity(double (*of)[4], const block *b, int count, doubles u[3]) {
     const doubles zero = {0};
     doubles v[3];
-    gather(p->now, b->dof_node[0], v);
+    gather(of, b->dof_node[0], v);
     for (int a = 0; a < 3; a++) u[a] = zero + b->weight[0] * v[a];
-    for (int e = 1; e < b->count; e++) {
-        gather(p->now, b->dof_node[e], v);
+    for (int e = 1; e < count; e++) {
+        gather(of, b->dof_node[e], v);
         const doubles rise = b->facet[0] * v[0] + b->facet[1] * v[1] + b->facet[2] * v[2];
         for (int a = 0; a < 3; a++) u[a] += b->weight[e] * v[a] + rise * b->height_gradient[e - 1][a];
     }
@@ -246,11 +246,11 @@ static inline doubles rub(block *b, const doubles u[3], doubles along, doubles J
     return doubles_sqrt(square) / b->unit_t;
 }
 
-double brunt_block_solve(const brunt_constraint_set *p, block *b) {
+BRUNT_INLINE double solve(const brunt_constraint_set *p, block *b, int count) {
     const doubles zero = {0};
     doubles u[3], J[3], along = {0};
     gifts g;
-    relative_velocity(p, b, u);
+    relative_velocity(p->now, b, count, u);
     for (int a = 0; a < 3; a++) along += u[a] * b->n[a];
     const doubles asked = b->normal_impulse + (b->target - along) * b->unit;
     const doubles now = doubles_select(b->scale > zero, doubles_max(asked, zero), zero);
@@ -259,15 +259,20 @@ double brunt_block_solve(const brunt_constraint_set *p, block *b) {
     for (int a = 0; a < 3; a++) J[a] = step * b->n[a];
     doubles changed = magnitude(step) / b->unit;
     if (b->rubs) changed = doubles_max(rub(b, u, along, J), changed);
-    for (int e = 0; e < b->count; e++) {
+    for (int e = 0; e < count; e++) {
         doubles out[3];
         transpose(b, e, J, out);
         give(&g, e, out[0], out[1], out[2], out[2]); // whatever the fourth is: beside zeros gcc 12 writes one by one
     }
-    hand_out(p, b, &g);
+    hand_out(p, b, count, &g);
     double greatest = 0;
     for (int l = 0; l < LANES; l++) greatest = changed[l] > greatest ? changed[l] : greatest;
     return greatest;
+}
+
+// Nodes on quadrilaterals are the most: loops over their entries have no branches.
+double brunt_block_solve(const brunt_constraint_set *p, block *b) {
+    return b->count == BRUNT_BLOCK_ENTRIES ? solve(p, b, BRUNT_BLOCK_ENTRIES) : solve(p, b, b->count);
 }
 
 void brunt_block_take_back(block *b) {
@@ -285,4 +290,13 @@ void brunt_block_finish(brunt_constraint_set *p, int64_t at) {
         for (int a = 0; a < 3; a++) c->friction_impulse[a] = b->friction_impulse[a][l];
         c->slips = b->slips[l];
     }
+}
+
+void brunt_block_rates(const brunt_constraint_set *p, int64_t at) {
+    const block *b = &p->block[at];
+    struct brunt_constraint_rates *rates = &p->rates[at * LANES];
+    doubles old[3], now[3];
+    relative_velocity(p->before, b, b->count, old), relative_velocity(p->now, b, b->count, now);
+    for (int l = 0; l < LANES; l++)
+        for (int a = 0; a < 3; a++) rates[l].old[a] = old[a][l], rates[l].now[a] = now[a][l];
 }

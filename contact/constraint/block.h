@@ -31,3 +31,5 @@ double brunt_block_solve(const brunt_constraint_set *set, brunt_constraint_block
 // Back to what was before the first sweep; and to the constraints what the sweeps came to.
 void brunt_block_take_back(brunt_constraint_block *block);
 void brunt_block_finish(brunt_constraint_set *set, int64_t b);
+// Makes the rates of the constraints of block b.
+void brunt_block_rates(const brunt_constraint_set *set, int64_t b);

@@ -39,6 +39,8 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->marks);
     brunt_free(p->shared);
     brunt_free(p->state);
+    brunt_free(p->before);
+    brunt_free(p->rates);
     brunt_free(p->inverse);
     brunt_free(p->received);
     brunt_free(p->sum);

@@ -102,12 +102,13 @@ typedef struct brunt_constraint_set {
     // What sweeps look at and change of each degree-of-freedom node, close together; the nodes have it when all is
     // done. A fourth number does not count.
     double (*now)[4];      // [m/s]; NULL but while a set is solved
+    double (*before)[4];   // [m/s] before the forces of this step
     double (*inverse)[4];  // [1/kg]
     double (*received)[4]; // [N s] in all
     double (*sum)[4];      // [N s] of a sweep so far, unless the node is shared
     double (*load)[2];  // [kg] sum of |weight| effective mass of its constraints: what they push and what they rub with
     double (*state)[4]; // room for `now`
-    size_t state_capacity, inverse_capacity, received_capacity, sum_capacity, load_capacity;
+    size_t state_capacity, before_capacity, inverse_capacity, received_capacity, sum_capacity, load_capacity;
     // Chunks of points are swept over in so many parts, each by one thread and in the order of the points, so that what
     // they give to nodes of one part alone is added up at once (parts.h). 0: every node is shared.
     int parts;
@@ -135,6 +136,10 @@ typedef struct brunt_constraint_set {
     size_t given_capacity;
     struct brunt_constraint_block *block; // of so many constraints at a time, where they are alike (block.h)
     size_t block_capacity;
+    struct brunt_constraint_rates {
+        double old[3], now[3]; // [m/s] relative velocity where it pushes, before the forces and now
+    } * rates;                 // of each constraint, once it is solved
+    size_t rates_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
     double kick;            // [s] what springs push over

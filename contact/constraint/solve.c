@@ -89,6 +89,8 @@ static int reserve_sweeps(brunt_constraint_set *p, brunt_error *error) {
     const size_t points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
     const size_t nodes = (size_t)p->dof_node_count + 1;
     return BRUNT_CAPACITY(p->state, nodes, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->before, nodes, 0, "nodes that contact moves", error) ||
+                   BRUNT_CAPACITY(p->rates, points, 0, "contact points", error) ||
                    BRUNT_CAPACITY(p->inverse, nodes, 0, "nodes that contact moves", error) ||
                    BRUNT_CAPACITY(p->received, nodes, 0, "nodes that contact moves", error) ||
                    BRUNT_CAPACITY(p->sum, nodes, 0, "nodes that contact moves", error) ||
@@ -207,8 +209,9 @@ static void begin_nodes(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         const brunt_dof_node *node = &p->dof_node[s];
         for (int a = 0; a < 3; a++)
-            p->now[s][a] = node->v[a], p->inverse[s][a] = node->inverse[a], p->received[s][a] = node->impulse[a];
-        p->now[s][3] = p->inverse[s][3] = p->received[s][3] = 0;
+            p->now[s][a] = node->v[a], p->before[s][a] = node->old[a], p->inverse[s][a] = node->inverse[a],
+            p->received[s][a] = node->impulse[a];
+        p->now[s][3] = p->before[s][3] = p->inverse[s][3] = p->received[s][3] = 0;
         memset(p->sum[s], 0, sizeof *p->sum);
         memset(p->load[s], 0, sizeof *p->load);
     }
@@ -440,6 +443,19 @@ static void account_velocity(const brunt_constraint *constraint, double sign, do
     }
 }
 
+static void rate_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
+        if (block_at(p, k)) {
+            brunt_block_rates(p, k / BRUNT_DOUBLES);
+            continue;
+        }
+        brunt_constraint_velocity(p, &p->constraint[k], true, p->rates[k].old);
+        brunt_constraint_velocity(p, &p->constraint[k], false, p->rates[k].now);
+    }
+}
+
 static void account_constraints(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->constraint_count; k++) {
         const brunt_constraint *constraint = &p->constraint[k];
@@ -451,8 +467,7 @@ static void account_constraints(brunt_constraint_set *p) {
         brunt_impulse_account within = {.area = 0}, *account = constraint->sign == 0 ? &within : constraint->account;
         const double sign = constraint->sign == 0 ? 1 : constraint->sign;
         double old[3], now[3], normal_impulse[3], friction_impulse[3], x[3];
-        brunt_constraint_velocity(p, constraint, true, old);
-        brunt_constraint_velocity(p, constraint, false, now);
+        memcpy(old, p->rates[k].old, sizeof old), memcpy(now, p->rates[k].now, sizeof now);
         account_velocity(constraint, sign, old, now);
         for (int a = 0; a < 3; a++) {
             normal_impulse[a] = sign * constraint->normal_impulse * constraint->n[a],
@@ -568,6 +583,7 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     }
     brunt_parallel(threads, chunks, 1, finish_chunks, p, timer);
     if (p->gives_back && brunt_constraints_release(p, threads, timer, error)) return BRUNT_FAILED;
+    brunt_parallel(threads, chunks, 1, rate_chunks, p, timer);
     account_constraints(p);
     brunt_parallel(threads, groups, 1, end_nodes, p, timer);
     p->now = NULL;
