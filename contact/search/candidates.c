@@ -23,7 +23,7 @@ static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, co
 static int64_t cell_of(const brunt_node_to_facet *f, const double x[3]) {
     int64_t cell = 0;
     for (int a = 0; a < 3; a++) {
-        double c = floor((x[a] - f->cells.origin[a]) / f->cells.cell);
+        double c = floor((x[a] - f->cells.shift[a] - f->cells.origin[a]) / f->cells.cell);
         if (!(c >= 0) || c >= f->cells.n[a]) return BRUNT_NONE;
         cell = cell * f->cells.n[a] + (int64_t)c;
     }

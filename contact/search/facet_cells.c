@@ -47,6 +47,7 @@ static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, b
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
             if (!brunt_broad_phase_in_range(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
+            for (int c = 0; c < 4 && s->face[face][c] >= 0; c++) f->cells.near[s->face[face][c]] = true;
             if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face, error)) return BRUNT_FAILED;
             cell_range(f, low, high, by, from, to);
             for (int32_t x = from[0]; x <= to[0]; x++)
@@ -92,6 +93,14 @@ static int32_t box_number(const brunt_contact_surface *s, const body_box *box) {
     return box->fem >= 0 ? box->fem : s->fem_count + box->mpm;
 }
 
+// Beside the nodes of facets that are listed: what has no facets, and the backs of membranes, whose fronts are listed.
+static void mark_others(const brunt_contact_surface *s, brunt_node_to_facet *f) {
+    for (int32_t n = 0; n < s->node_count; n++) {
+        if (s->face_first[n + 1] == s->face_first[n]) f->cells.near[n] = true;
+        if (s->membrane.front) f->cells.near[n] = f->cells.near[n] || f->cells.near[s->membrane.front[n]];
+    }
+}
+
 static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     f->cells.range = 1.25 * f->bodies.range;
@@ -99,10 +108,12 @@ static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f, br
     size_t cells = (size_t)f->cells.n[0] * (size_t)f->cells.n[1] * (size_t)f->cells.n[2];
     if (RESERVE(&f->cells, first, cells + 3, "cells of facets", error) ||
         RESERVE(&f->cells, x, s->node_count + 1, "places of nodes", error) ||
-        RESERVE(&f->cells, further, s->node_count / CHUNK + 1, "chunks of nodes", error) ||
+        RESERVE(&f->cells, moved, s->node_count / CHUNK + 1, "chunks of nodes", error) ||
+        RESERVE(&f->cells, near, s->node_count + 1, "marks of nodes", error) ||
         RESERVE(&f->cells, box, f->bodies.box_count + 1, "boxes of cells of facets", error))
         return BRUNT_FAILED;
     memset(f->cells.first, 0, (cells + 3) * sizeof *f->cells.first);
+    memset(f->cells.near, false, (size_t)s->node_count);
     list_facets(m, f, false, error);
     for (size_t c = 2; c <= cells + 1; c++) f->cells.first[c] += f->cells.first[c - 1];
     if (RESERVE(&f->cells, face, f->cells.first[cells + 1] + 1, "facets in cells", error)) return BRUNT_FAILED;
@@ -113,6 +124,8 @@ static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f, br
                (size_t)(s->node_range[k + 1] - s->node_range[k]) * sizeof *s->x);
     }
     for (int32_t b = 0; b < f->bodies.box_count; b++) f->cells.box[box_number(s, &f->bodies.box[b])] = f->bodies.box[b];
+    mark_others(s, f);
+    memset(f->cells.shift, 0, sizeof f->cells.shift);
     f->cells.made = true;
     return BRUNT_OK;
 }
@@ -124,7 +137,8 @@ static bool boxes_hold(const brunt_contact_context *m, const brunt_node_to_facet
         const body_box *now = &f->bodies.box[b], *then = &f->cells.box[box_number(m->surface, now)];
         if (f->bodies.first[b + 1] == f->bodies.first[b]) continue;
         for (int a = 0; a < 3; a++)
-            if (now->low[a] < then->low[a] - f->cells.range || now->high[a] > then->high[a] + f->cells.range)
+            if (now->low[a] - f->cells.shift[a] < then->low[a] - f->cells.range ||
+                now->high[a] - f->cells.shift[a] > then->high[a] + f->cells.range)
                 return false;
     }
     return true;
@@ -133,19 +147,17 @@ static bool boxes_hold(const brunt_contact_context *m, const brunt_node_to_facet
 typedef struct motion_job {
     const brunt_contact_surface *surface;
     const brunt_node_to_facet *f;
-    bool *further; // of each chunk of nodes: some are further than the cells allow
 } motion_job;
 
-static bool has_moved(const motion_job *j, int k, int32_t begin, int32_t end) {
+static void bound_motion(const motion_job *j, int k, int32_t begin, int32_t end, motion_bounds bounds[2]) {
     const brunt_contact_surface *s = j->surface;
-    const double greatest = MARGIN * s->mean_edge, square = greatest * greatest;
-    bool further = false;
     for (int32_t n = begin > s->node_range[k] ? begin : s->node_range[k]; n < end && n < s->node_range[k + 1]; n++) {
-        double d2 = 0;
-        for (int a = 0; a < 3; a++) d2 += (s->x[n][a] - j->f->cells.x[n][a]) * (s->x[n][a] - j->f->cells.x[n][a]);
-        further = further || d2 > square;
+        motion_bounds *b = &bounds[!j->f->cells.near[n]];
+        for (int a = 0; a < 3; a++) {
+            const double moved = s->x[n][a] - j->f->cells.x[n][a];
+            b->low[a] = moved < b->low[a] ? moved : b->low[a], b->high[a] = moved > b->high[a] ? moved : b->high[a];
+        }
     }
-    return further;
 }
 
 static void look_at_motion(void *context, int64_t begin, int64_t end, int worker) {
@@ -155,25 +167,50 @@ static void look_at_motion(void *context, int64_t begin, int64_t end, int worker
     int k = 0;
     for (int64_t c = begin; c < end; c++) {
         const int32_t first = (int32_t)c * CHUNK, last = first + CHUNK;
-        j->further[c] = false;
+        motion_bounds *bounds = j->f->cells.moved[c];
+        for (int i = 0; i < 2; i++)
+            for (int a = 0; a < 3; a++) bounds[i].low[a] = INFINITY, bounds[i].high[a] = -INFINITY;
         while (s->node_range[k + 1] <= first) k++;
         for (int body = k; body < s->fem_count && s->node_range[body] < last; body++)
-            if (s->active[body] && has_moved(j, body, first, last)) j->further[c] = true;
+            if (has_near_bodies(&j->f->bodies, j->f->bodies.box_of[body])) bound_motion(j, body, first, last, bounds);
     }
+}
+
+// The furthest that anything within bounds is off their shift [m].
+static double off(const motion_bounds *b, const double shift[3]) {
+    double square = 0;
+    for (int a = 0; a < 3; a++) square += pow(fmax(0, fmax(b->high[a] - shift[a], shift[a] - b->low[a])), 2);
+    return sqrt(square);
+}
+
+// Whether nothing has moved further than the cells allow, but together. What is near is listed that far around. What is
+// not was further than twice the reach of a list from the boxes of all others, and may come half of the rest
+// nearer; from material points it was that far from what may come by a range itself.
+static bool motion_holds(const brunt_contact_context *m, brunt_node_to_facet *f) {
+    const brunt_contact_surface *s = m->surface;
+    const int64_t chunks = (s->node_count + CHUNK - 1) / CHUNK;
+    const double margin = MARGIN * s->mean_edge, others = margin + (f->particles.mpm_count ? 0 : 0.5 * f->cells.range);
+    motion_bounds all[2];
+    for (int i = 0; i < 2; i++)
+        for (int a = 0; a < 3; a++) all[i].low[a] = INFINITY, all[i].high[a] = -INFINITY;
+    brunt_parallel(m->threads, chunks, 1, look_at_motion, &(motion_job){s, f}, m->timer);
+    for (int64_t c = 0; c < chunks; c++)
+        for (int i = 0; i < 2; i++)
+            for (int a = 0; a < 3; a++) {
+                all[i].low[a] = fmin(all[i].low[a], f->cells.moved[c][i].low[a]);
+                all[i].high[a] = fmax(all[i].high[a], f->cells.moved[c][i].high[a]);
+            }
+    const motion_bounds *together = &all[all[0].low[0] <= all[0].high[0] ? 0 : 1];
+    for (int a = 0; a < 3; a++)
+        f->cells.shift[a] = together->low[a] <= together->high[a] ? 0.5 * (together->low[a] + together->high[a]) : 0;
+    return off(&all[0], f->cells.shift) <= margin && off(&all[1], f->cells.shift) <= others;
 }
 
 // Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are
 // near.
-static bool cells_hold(const brunt_contact_context *m, const brunt_node_to_facet *f, uint64_t pairs) {
-    const brunt_contact_surface *s = m->surface;
-    if (!f->cells.made || f->cells.pair_count != f->bodies.pair_count || f->cells.pairs_key != pairs ||
-        f->bodies.range > f->cells.range)
-        return false;
-    const int64_t chunks = (s->node_count + CHUNK - 1) / CHUNK;
-    brunt_parallel(m->threads, chunks, 1, look_at_motion, &(motion_job){s, f, f->cells.further}, m->timer);
-    for (int64_t c = 0; c < chunks; c++)
-        if (f->cells.further[c]) return false;
-    return boxes_hold(m, f);
+static bool cells_hold(const brunt_contact_context *m, brunt_node_to_facet *f, uint64_t pairs) {
+    return f->cells.made && f->cells.pair_count == f->bodies.pair_count && f->cells.pairs_key == pairs &&
+           f->bodies.range <= f->cells.range && motion_holds(m, f) && boxes_hold(m, f);
 }
 
 // A number that differs when other bodies are near or active.

@@ -326,6 +326,124 @@ START_TEST(restart_on_the_way) {
 }
 END_TEST
 
+// A plate that is held together with a block that slides on it, both on their way at an edge and more a step, and a
+// third body that flies across and hits the plate's end, or the block: what cells of facets were made for has gone far,
+// some together and some not. `k`: which way they fly, and which body comes.
+static brunt_world_def flying(int k) {
+    const motion m = {.dim = 3, .turn = k % 3, .method = BRUNT_CONTACT_AUGURY};
+    const double fly = k & 1 ? -20 : 20, across = k & 2 ? 20 : 0;
+    brunt_world_def def = def_begin(3, H);
+    def.contact.method = m.method;
+    def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
+    add_body(&def, &m, "plate", MESH, XYZ(0, 0, -H), XYZ(9 * H, 4 * H, 0), XYZ(fly, across, 0));
+    add_body(&def, &m, "block", MESH, XYZ(0.3 * H, 0.4 * H, 0), XYZ(3.3 * H, 3.4 * H, 2 * H),
+             XYZ(fly + 1, across, -0.5));
+    const double from = k & 4 ? 5 * H : 0.5 * H, above = k & 4 ? 0.6 * H : 2.6 * H;
+    add_body(&def, &m, "third", MESH, XYZ(from, 0.7 * H, above), XYZ(from + 2 * H, 2.7 * H, above + 2 * H),
+             XYZ(fly, across, -3));
+    turn(&m, XYZ(0, 0, -GRAVITY), def.gravity);
+    return def;
+}
+
+// Each step is what one is that begins with nothing but the state.
+START_TEST(cells_come_along) {
+    brunt_world_def def = flying(_i);
+    brunt_world *one = world_take(&def);
+    int64_t met = 0;
+    for (int step = 0; step < 120; step++) {
+        brunt_world_def again = flying(_i);
+        brunt_world *two = world_take(&again);
+        world_copy_state(one, two);
+        world_steps(one, 1), world_steps(two, 1);
+        ck_assert_msg(brunt_world_hash(one) == brunt_world_hash(two), "flight %d: another step %d", _i, step);
+        for (int p = 0; p < 3; p++) met += world_pair(one, p).area > 0;
+        brunt_world_destroy(two);
+    }
+    printf("flight %d: %lld touches in %g s\n", _i, (long long)met, brunt_world_time(one));
+    ck_assert_int_gt(met, 30);
+    brunt_world_destroy(one);
+}
+END_TEST
+
+// A body of pieces that do not touch each other, of which all but the first are held: its box stays where it is while
+// the first one flies.
+static void add_pieces(brunt_world_def *def, const char *name, const brunt_shape *piece, int count, const double v[3]) {
+    brunt_body_def *b = def_body(def, name);
+    brunt_mesh mesh = {.kind = BRUNT_HEX8, .nodes = brunt_def_alloc(3 * 600 * sizeof(double))};
+    mesh.elements = brunt_def_alloc(8 * 600 * sizeof *mesh.elements),
+    mesh.groups = brunt_def_alloc(sizeof *mesh.groups);
+    brunt_group *held = &mesh.groups[mesh.group_count++];
+    snprintf(held->name, sizeof held->name, "held");
+    held->nodes = brunt_def_alloc(600 * sizeof *held->nodes);
+    for (int p = 0; p < count; p++) {
+        brunt_mesh one;
+        ck_assert_int_eq(brunt_mesh_shape(&piece[p], 3, BRUNT_HEX8, H, &one, NULL), BRUNT_OK);
+        ck_assert_int_le(mesh.node_count + one.node_count, 600);
+        for (int32_t e = 0; e < 8 * one.element_count; e++)
+            mesh.elements[8 * mesh.element_count + e] = mesh.node_count + one.elements[e];
+        memcpy(mesh.nodes + mesh.node_count, one.nodes, (size_t)one.node_count * sizeof *one.nodes);
+        for (int32_t n = 0; n < one.node_count && p > 0; n++) held->nodes[held->count++] = mesh.node_count + n;
+        mesh.node_count += one.node_count, mesh.element_count += one.element_count;
+        brunt_mesh_free(&one);
+    }
+    b->method = BRUNT_FEM, b->mesh = mesh;
+    def_velocity(b, v[0], v[1], v[2]);
+    brunt_group_def *g = &def->groups[def->group_count++];
+    *g = brunt_group_def_default();
+    snprintf(g->body, sizeof g->body, "%s", name), snprintf(g->group, sizeof g->group, "held");
+    for (int a = 0; a < 3; a++) g->component[a] = true;
+}
+
+static brunt_shape box_of(const double low[3], const double size[3]) {
+    brunt_shape box = {.kind = BRUNT_BOX};
+    for (int a = 0; a < 3; a++) box.min[a] = low[a] * H, box.max[a] = (low[a] + size[a]) * H;
+    return box;
+}
+
+// Slabs that slide one way and the other along a plate, or one that falls on it from beyond where facets are looked
+// for: posts, which are held, keep the boxes of their bodies where they are.
+static brunt_world_def between_posts(int first, int end) {
+    static const double v[3][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, -1}}, at[3] = {2.3, 12.4, 6.2}, high[3] = {0, 0, 1.7};
+    brunt_world_def def = def_begin(3, H);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
+    const brunt_shape plate[] = {box_of(XYZ(8, 15, -1), XYZ(1, 1, 1)), box_of(XYZ(0, 0, -1), XYZ(18, 10, 1))};
+    add_pieces(&def, "plate", plate, 2, XYZ(0, 0, 0));
+    for (int k = first; k < end; k++) {
+        const double y = 3.4 * k + 0.3;
+        const brunt_shape piece[] = {box_of(XYZ(at[k], y, high[k]), XYZ(3, 2, 0.6)),
+                                     box_of(XYZ(-3, y - 0.6, -1), XYZ(1, 3, 5)),
+                                     box_of(XYZ(20, y - 0.6, -1), XYZ(1, 3, 5))};
+        add_pieces(&def, (const char *[]){"one", "two", "three"}[k], piece, 3, v[k]);
+    }
+    def.gravity[2] = -GRAVITY;
+    return def;
+}
+
+START_TEST(boxes_that_stay) {
+    static const int slabs[][2] = {{0, 2}, {0, 1}, {1, 2}, {2, 3}};
+    const int first = slabs[_i][0], end = slabs[_i][1], count = end - first;
+    brunt_world_def def = between_posts(first, end);
+    brunt_world *one = world_take(&def);
+    int64_t met[3] = {0}; // of pairs
+    for (int step = 0; step < 150; step++) {
+        brunt_world_def again = between_posts(first, end);
+        brunt_world *two = world_take(&again);
+        world_copy_state(one, two);
+        world_steps(one, 1), world_steps(two, 1);
+        ck_assert_msg(brunt_world_hash(one) == brunt_world_hash(two), "another step %d", step);
+        for (int p = 0; p < (count > 1 ? 3 : 1); p++) met[p] += world_pair(one, p).area > 0;
+        brunt_world_destroy(two);
+    }
+    int pairs = 0;
+    for (int p = 0; p < 3; p++) pairs += met[p] > 5;
+    printf("between posts: %d pairs touch in %g s\n", pairs, brunt_world_time(one));
+    ck_assert_int_eq(pairs, count);
+    brunt_world_destroy(one);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("one_sided_motion");
     ADD(slides_2d);
@@ -339,6 +457,8 @@ int main(void) {
     TCase *looped = tcase_create("fast_plane");
     tcase_add_loop_test(looped, fast_plane, 0, 2);
     tcase_add_loop_test(looped, restart_on_the_way, 0, 2);
+    tcase_add_loop_test(looped, cells_come_along, 0, 8);
+    tcase_add_loop_test(looped, boxes_that_stay, 0, 4);
     suite_add_tcase(suite, looped);
     return suite_main(suite);
 }
