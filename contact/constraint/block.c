@@ -93,7 +93,7 @@ static bool fits(const brunt_constraint_set *p, const brunt_constraint *c) {
     bool fits = c->count <= BRUNT_BLOCK_ENTRIES && !c->friction_point && !c->sticks && c->least == 0 &&
                 !(c->spring > 0) && c->image == 0 && c->plane[0] == 0 && c->plane[1] == 0 && c->plane[2] == 0;
     for (int32_t e = c->first; e < c->first + c->count && fits; e++)
-        fits = same(p->entry[e].weight) && !p->dof_node[p->entry[e].dof_node].angular;
+        fits = same(p->entry[e].weight) && !(p->levered && p->dof_node[p->entry[e].dof_node].angular);
     const double *gradient = p->entry[c->first].height_gradient;
     return fits && gradient[0] == 0 && gradient[1] == 0 && gradient[2] == 0;
 }

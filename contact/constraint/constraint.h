@@ -106,6 +106,7 @@ typedef struct brunt_constraint_set {
     double (*inverse)[4];  // [1/kg]
     double (*received)[4]; // [N s] in all
     double (*sum)[4];      // [N s] of a sweep so far, unless the node is shared
+    bool levered;          // some are angular velocities
     double (*load)[2];  // [kg] sum of |weight| effective mass of its constraints: what they push and what they rub with
     double (*state)[4]; // room for `now`
     size_t state_capacity, before_capacity, inverse_capacity, received_capacity, sum_capacity, load_capacity;

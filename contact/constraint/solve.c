@@ -212,6 +212,7 @@ static void begin_nodes(void *context, int64_t begin, int64_t end, int worker) {
             p->now[s][a] = node->v[a], p->before[s][a] = node->old[a], p->inverse[s][a] = node->inverse[a],
             p->received[s][a] = node->impulse[a];
         p->now[s][3] = p->before[s][3] = p->inverse[s][3] = p->received[s][3] = 0;
+        if (node->angular) __atomic_store_n(&p->levered, true, __ATOMIC_RELAXED); // several threads may
         memset(p->sum[s], 0, sizeof *p->sum);
         memset(p->load[s], 0, sizeof *p->load);
     }
@@ -571,7 +572,7 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     if (!p->constraint_count) return BRUNT_OK;
     if (brunt_constraints_make_parts(p, threads, timer, error) || reserve_sweeps(p, error)) return BRUNT_FAILED;
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
-    p->now = p->state;
+    p->now = p->state, p->levered = false;
     brunt_parallel(threads, groups, 1, begin_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
     if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;

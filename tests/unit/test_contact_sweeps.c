@@ -298,6 +298,44 @@ START_TEST(parts_change_no_sum) {
 }
 END_TEST
 
+// Points that turn what they push on, by levers, each with a mass of its own. `alone`: all have four more entries, of
+// weight 0, so that they are in no block whatever they push on.
+static void make_turned(brunt_constraint_set *p, brunt_impulse_account *account, bool alone) {
+    enum { COUNT = 16 };
+    memset(p, 0, sizeof *p), memset(account, 0, sizeof *account);
+    for (int i = 0; i < COUNT + 1; i++) {
+        ck_assert_int_eq(brunt_constraints_dof_node(p, NULL), i);
+        for (int a = 0; a < 3; a++) p->dof_node[i].inverse[a] = i ? 1 : a == 0 ? 5 : 0;
+        p->dof_node[i].v[2] = p->dof_node[i].old[2] = i ? -some(i) : 0;
+    }
+    p->dof_node[0].angular = true;
+    for (int k = 0; k < COUNT; k++) {
+        brunt_constraint *point;
+        ck_assert_int_eq(brunt_constraints_add(p, NULL), k);
+        point = &p->constraint[k];
+        point->n[2] = point->facet[0] = 1, point->account = account, point->sign = 1, point->turns = true;
+        ck_assert_int_ge(brunt_constraints_entry(p, k + 1, 1, NULL), 0);
+        const int32_t lever = brunt_constraints_entry(p, 0, 0, NULL);
+        p->entry[lever].height_gradient[2] = 0.5 - some(3 * k);
+        for (int e = 0; e < 4 && alone; e++) ck_assert_int_ge(brunt_constraints_entry(p, k + 1, 0, NULL), 0);
+    }
+}
+
+START_TEST(levers_are_in_no_block) {
+    brunt_constraint_set one, many;
+    brunt_impulse_account account[2];
+    brunt_timer timer = {0};
+    make_turned(&one, &account[0], true), make_turned(&many, &account[1], false);
+    ck_assert_int_eq(brunt_constraints_solve(&one, 50, 1e-6, 1, &timer, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_constraints_solve(&many, 50, 1e-6, 1, &timer, NULL), BRUNT_OK);
+    ck_assert(many.dof_node[0].v[0] != 0);
+    for (int k = 0; k < many.constraint_count; k++)
+        check_same(&one.constraint[k].row_sum, &many.constraint[k].row_sum, 1, many.constraint[k].row_sum);
+    for (int i = 0; i < many.dof_node_count; i++) check_same(one.dof_node[i].v, many.dof_node[i].v, 3, 1);
+    brunt_constraints_free(&one), brunt_constraints_free(&many);
+}
+END_TEST
+
 // The address sanitizer ends a program that asks for too much unless it is told to give nothing.
 __attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void) { return "allocator_may_return_null=1"; }
@@ -434,6 +472,7 @@ int main(void) {
     ADD(no_memory_is_told);
     ADD(columns_are_in_the_order_of_the_points);
     ADD(parts_change_no_sum);
+    ADD(levers_are_in_no_block);
     ADD(slivers_do_not_run_away);
     ADD(blocks_do_as_one_alone);
     ADD(a_tighter_tolerance_leaves_less);
