@@ -4,7 +4,7 @@
 usage: packing_growth.py [LATTICE...]   (from the top of the tree; BRUNT names the program, default build/brunt; some ten minutes, of which two are of two cores)
        packing_growth.py --plot         draws packing_growth.png anew from packing_growth.csv
 
-The scenes bench/scenes/packing_square.yaml and packing_hex.yaml with as many disks a side as are asked for, and Young's moduli all alike or
+The scenes bench/scenes/packing_square.yaml and packing_hex_small.yaml with as many disks a side as are asked for, and Young's moduli all alike or
 drawn about 2.75 MPa with a standard deviation of 8 MPa between 0.5 and 5 MPa. Three load steps. Lines of lattices that are named are taken anew, the others
 stay. A run that finds no equilibrium within half an hour is a line without iterations.
 """
@@ -13,6 +13,7 @@ import csv, json, math, os, re, subprocess, sys, tempfile
 HERE = "bench/studies/packing_growth"
 BRUNT = os.environ.get("BRUNT", "build/brunt")
 PITCH, LONGEST = 10.03, 1800  # mm, s
+SCENES = {"square": "packing_square", "hex": "packing_hex_small"}
 RUNS = [("square", 0, n, t) for n in (10, 25, 50, 100) for t in (1, 2)] + [("square", 8, n, 1) for n in (10, 25, 50, 100)] + \
        [("hex", 0, n, 1) for n in (10, 25, 50, 93)] + [("hex", 8, n, 1) for n in (10, 25)]
 PASSES = ["newton", "evaluate", "matrix", "factor", "solve", "limit", "search", "commit"]
@@ -30,6 +31,8 @@ def sets(lattice, spread, side):
         yield f"bodies.{plate}.size={0.9 * min(wide, high):.3f} mm"
     if spread:
         yield f"bodies.grains.random={{E: {{normal: [2.75 MPa, {spread} MPa], between: [0.5 MPa, 5 MPa]}}, seed: 1}}"
+    if lattice == "hex":
+        yield "bodies.grains.size=1 mm"
     yield "output.every=none"
 
 
@@ -39,7 +42,7 @@ def seconds_of(text, pattern):
 
 
 def measure(lattice, spread, side, threads, folder):
-    command = [BRUNT, "run", f"bench/scenes/packing_{lattice}.yaml", "-t", str(threads), "-q", "--fresh", "--profile", "-o", folder]
+    command = [BRUNT, "run", f"bench/scenes/{SCENES[lattice]}.yaml", "-t", str(threads), "-q", "--fresh", "--profile", "-o", folder]
     for one in sets(lattice, spread, side):
         command += ["--set", one]
     try:
