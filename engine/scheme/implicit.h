@@ -212,7 +212,7 @@ void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double sign,
 // Keeps the tractions at u: those that the next step begins with.
 void brunt_implicit_surfaces_keep(brunt_world *world);
 // None, as before the first step.
-void brunt_implicit_surfaces_forget(brunt_world *world);
+void brunt_implicit_surfaces_forget(brunt_boundary_surfaces *surfaces);
 // What they did over the step; what they do at its end is added to `field.gradient`. Their tractions are kept.
 void brunt_implicit_account_surfaces(brunt_world *world);
 // Adds to a reason why a step has failed which bodies have too few rows to be held; nothing where there are no

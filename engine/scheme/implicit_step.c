@@ -489,7 +489,8 @@ static int check_planes(const brunt_world *world, brunt_error *error) {
 static int withdraw(brunt_world *world, double wanted, const brunt_newton_counts *tried,
                     const brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
-    if (m->holds && world->clock.steps == 0) brunt_implicit_surfaces_forget(world); // Newmark's first one has found
+    if (m->holds && world->clock.steps == 0) // Newmark's first one has found some
+        brunt_implicit_surfaces_forget(&world->boundaries.surfaces);
     if (m->stopped) return brunt_implicit_leave(world, error);
     brunt_newton_counts_add(&world->clock.newton, tried);
     world->clock.withdrawn = true;

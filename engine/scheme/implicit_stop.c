@@ -3,10 +3,10 @@
 #include "base/error.h"
 #include "scheme/implicit.h"
 
-// Who has been told so once is told so again, whatever has been made of it: no end is then that of the step.
+// What has said so once says so again, whatever has been made of it: no end is then that of the step.
 static bool ask(void *context) {
     struct brunt_implicit *m = context;
-    const brunt_stop *stop = &m->world->stop;
+    const brunt_stop *stop = &m->world->timing.stop;
     m->stopped = m->stopped || stop->asked(stop->context);
     return m->stopped;
 }
@@ -16,7 +16,7 @@ int brunt_implicit_heed(brunt_world *world, brunt_error *error) {
     const int boundaries = world->boundaries.boundary_count, pairs = world->pairs.count;
     m->stopped = false;
     m->options.stop = (brunt_stop){.asked = NULL};
-    if (!world->stop.asked) return BRUNT_OK;
+    if (!world->timing.stop.asked) return BRUNT_OK;
     m->options.stop = (brunt_stop){ask, m};
     if (BRUNT_CAPACITY(m->last, (size_t)boundaries + (size_t)pairs + 1, 0, "accounts of the last step", error))
         return BRUNT_FAILED;

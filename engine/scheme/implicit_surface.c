@@ -116,16 +116,16 @@ static void account_ghost(brunt_world *world) {
     }
 }
 
-void brunt_implicit_surfaces_forget(brunt_world *world) {
-    for (int k = 0; k < world->boundaries.surfaces.count; k++) {
-        brunt_boundary_surface *s = &world->boundaries.surfaces.surface[k];
+void brunt_implicit_surfaces_forget(brunt_boundary_surfaces *surfaces) {
+    for (int k = 0; k < surfaces->count; k++) {
+        brunt_boundary_surface *s = &surfaces->surface[k];
         memset(s->traction, 0, (size_t)s->bodies * (size_t)s->pieces * 3 * sizeof *s->traction);
     }
 }
 
 void brunt_implicit_surfaces_keep(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
-    brunt_implicit_surfaces_forget(world);
+    brunt_implicit_surfaces_forget(&world->boundaries.surfaces);
     for (int32_t patch = 0; patch < m->rows.patch_count; patch++) {
         const brunt_boundary_patch *p = &m->rows.patch[patch];
         brunt_boundary_surface *s = p->surface;

@@ -1,7 +1,7 @@
 // Bodies of small strain that have turned, looked for once, at the end.
 //
 // Stress and strain of such a body are those of where its nodes were: its forces f have no moment about there, and
-// about where they have come to, x, one that nothing bears: sum of x x f, which is 0 of a body that may turn. On one
+// about where they have come to, x, one that nothing holds: sum of x x f, which is 0 of a body that may turn. On one
 // that is pressed by N from two sides, R from its middle, and has turned by t, it is 2 N R t: as if what presses went
 // by the middle at R t. Friction along its rim, of moment R T, makes up for it, so that forces along surfaces are off
 // by t of those across them.

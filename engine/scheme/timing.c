@@ -19,7 +19,7 @@ void brunt_world_observe(brunt_world *world, const brunt_observer *observer) {
 }
 
 void brunt_world_heed(brunt_world *world, const brunt_stop *stop) {
-    world->stop = stop ? *stop : (brunt_stop){.asked = NULL};
+    world->timing.stop = stop ? *stop : (brunt_stop){.asked = NULL};
 }
 
 double brunt_world_step_seconds(const brunt_world *world) { return world->timing.seconds; }

@@ -22,6 +22,7 @@ typedef struct brunt_timing {
     brunt_pass_time passes[BRUNT_PASS_LIMIT]; // of the plan
     bool observed;
     brunt_observer observer;
+    brunt_stop stop; // of steps that are left; asked NULL: none are
 } brunt_timing;
 
 // Where the time of parallel phases goes: to the pass that runs. NULL outside a step.

@@ -30,7 +30,6 @@ struct brunt_world {
     brunt_messages messages;
     brunt_plan plan;
     brunt_timing timing;
-    brunt_stop stop; // no state
 };
 
 // --- grid_update.c

@@ -36,3 +36,5 @@ int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_hi
                     brunt_error *error);
 // What is doubtful about a scene and the world made of it, each line after "warning: ".
 void brunt_run_warn(const brunt_scene *scene, const brunt_world *world, brunt_console *console);
+// Warnings of the world from number `from` on.
+void brunt_run_warn_from(const brunt_world *world, int32_t from, brunt_console *console);

@@ -111,7 +111,7 @@ START_TEST(are_the_balls_they_would_be) {
 END_TEST
 
 #ifndef BRUNT_FLOAT
-// Four columns of three between a floor and a plate that cannot tilt: each bears a fourth of the load.
+// Four columns of three between a floor and a plate that cannot tilt: each carries a fourth of the load.
 static const char pressed[] =
     "brunt: 1\ntitle: balls in columns\ndimension: 3\ntime: {scheme: static, steps: 2}\nnewton: {tolerance: 1e-9}\n"
     "materials:\n  rubber: {model: linear-elastic, density: 1000, E: 2.75 MPa, nu: 0.3}\n"
