@@ -64,18 +64,19 @@ static int region_of(const brunt_barrier *b, int32_t point, const barrier_featur
 static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
     r->feature_count = r->edge_count = r->vertex_count = 0;
     const int32_t body = barrier_body_of(b, point);
-    int32_t clear = BRUNT_NONE, looked = BRUNT_NONE; // of another body
+    int32_t other = BRUNT_NONE;
+    bool clear = false; // of the other body
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]];
         barrier_feature of = {.facet = b->facets.item[i]};
         double d;
         int32_t v[3];
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
-        if (b->body[f[0]] != looked) {
-            looked = b->body[f[0]];
-            if (barrier_is_clear_of(b, point, looked, barrier_pair_of(b, of.law), u)) clear = looked;
+        if (b->body[f[0]] != other) {
+            other = b->body[f[0]];
+            clear = barrier_is_clear_of(b, point, other, barrier_pair_of(b, of.law), u);
         }
-        if (clear == looked) continue;
+        if (clear) continue;
         const int region = region_of(b, point, &of, u, &of.along, &d);
         if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);

@@ -57,14 +57,18 @@ START_TEST(curves_bend_from_their_chords) {
 END_TEST
 
 // A point above and below a floor: nothing above the distance, k times how deep it is below, without a step at 0; lost
-// below the reach.
+// below the reach. What it is near to beside and does not touch, a ceiling, changes nothing.
 START_TEST(pressure_is_by_depth) {
     static const double floor[][2] = {{5, 0}, {-5, 0}, {0, -5}}, area = 0.02;
-    static const double distance[] = {0, 0.01};
-    for (int d = 0; d < 2; d++) {
+    static const double ceiling[][2] = {{-5, 0.08}, {5, 0.08}, {0, 5}}, distance[] = {0, 0.01};
+    for (int k = 0; k < 6; k++) {
+        const int d = k % 2; // with a ceiling from 2 on, before the floor from 4 on
         barrier_case *c = case_begin(2);
         uint64_t state = 1;
+        if (k >= 4) case_polygon(c, 2, ceiling, 3);
         case_polygon(c, 0, floor, 3);
+        if (k == 2 || k == 3) case_polygon(c, 2, ceiling, 3);
+        if (k >= 2) overlapping(c, 1, 2, distance[d]);
         case_particle(c, (double[3]){0.3, 0, 0}, area, 1, 1, &state);
         overlapping(c, 0, 1, distance[d]);
         case_ready(c);
