@@ -119,6 +119,10 @@ double brunt_barrier_vertex_area(const brunt_barrier *barrier, int32_t vertex);
 // lag.
 brunt_term brunt_barrier_term(brunt_barrier *barrier);
 brunt_term brunt_barrier_friction_term(brunt_barrier *barrier);
+// Of surfaces that may overlap: those that touch, or overlap, are joined as springs would be, until they are told not
+// to be: from the next look on gradient and Hessian are those of both sides of the gap, and across it where there is
+// friction. Energy is as ever.
+void brunt_barrier_join(brunt_barrier *barrier, bool joined);
 // Takes normal forces and directions of friction at u.
 int brunt_barrier_lag(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
 // Sum of the greatest friction by those, where it has an end [N].

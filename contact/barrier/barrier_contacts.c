@@ -154,7 +154,7 @@ static void plane_contacts(const brunt_barrier *b, int32_t point, const double *
         for (int j = 0; j < b->dim; j++) c.at.d -= plane->normal[j] * x[0][j], c.at.n[j] = plane->normal[j];
         c.weight = barrier_area_of(b, point);
         c.offset = barrier_plane_offset(b, plane, point);
-        if (c.at.d - c.offset < plane->distance) take(context, &c);
+        if (c.at.d - c.offset < plane->distance + b->touch) take(context, &c);
     }
 }
 

@@ -130,7 +130,7 @@ static bool plane_is_near(const barrier_way *w, int32_t point, const brunt_near_
         gap += n * (corner - (plane->origin[k] - b->origin[k]) - from[k]);
         comes += n * w->part * by[k];
     }
-    return !(gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->margin);
+    return !(gap - fmax(comes, 0) > plane->distance + b->touch + barrier_plane_offset(b, plane, point) + w->margin);
 }
 
 static int64_t planes_of(const void *context, int32_t point, int32_t *out) {

@@ -76,7 +76,7 @@ bool barrier_is_clear_of(const brunt_barrier *b, int32_t point, int32_t body, co
     if (!(pair->reach > 0)) return false;
     const chord c = nearest_chord(b, point, body, u);
     double n[3] = {0};
-    if (!(c.d > MORE * (pair->distance + pair->offset + 2 * c.bend)) || c.facet < 0) return false;
+    if (!(c.d > MORE * (pair->distance + b->touch + pair->offset + 2 * c.bend)) || c.facet < 0) return false;
     if (c.ends == (BRUNT_AT_A | BRUNT_AT_B))
         outward(b, c.facet, u, n);
     else
@@ -96,7 +96,7 @@ void barrier_settle_overlaps(const brunt_barrier *b, int32_t point, const double
         f->gap = INFINITY;
         if (!f->times || !(barrier_pair_of(b, f->law)->reach > 0)) continue;
         f->gap = gap_of(b, point, f, u);
-        if (!(f->gap < barrier_pair_of(b, f->law)->distance)) f->times = 0;
+        if (!(f->gap < barrier_pair_of(b, f->law)->distance + b->touch)) f->times = 0;
     }
     for (int64_t i = 0; i < r->feature_count; i++) {
         barrier_feature *f = &r->feature[i];

@@ -191,6 +191,7 @@ struct brunt_barrier {
     barrier_contacts contacts, lagged;
     barrier_rub *rub;   // of `lagged`
     barrier_kept *kept; // BARRIER_KEPT of each vertex, where load steps keep slips
+    double touch;       // [m] gaps below which surfaces are joined (barrier_join.c); 0: they are not
     bool keeps;
     bool live;          // friction follows normal forces and directions as they are, not as they were at the last lag
     bool tries;         // and what it is at a place that is tried is asked for
@@ -342,6 +343,10 @@ void barrier_cone_gradient(const brunt_barrier *b, const barrier_contact *c, con
 // With that of the barrier alone it is positive. `part`: that of the greatest force, as of `barrier_slip_hessian`.
 void barrier_cone_hessian(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
                           double *hessian);
+
+// --- one contact, joined (barrier_join.c)
+void barrier_join_gradient(const brunt_barrier *b, const barrier_contact *c, double *gradient);
+void barrier_join_hessian(const brunt_barrier *b, const barrier_contact *c, double *hessian);
 
 // --- from load step to load step (barrier_memory.c)
 // How far the surfaces of a contact had given before the step [m]; 0: nothing is kept.

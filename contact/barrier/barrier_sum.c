@@ -83,6 +83,8 @@ static void fill_contact(void *context, int64_t s, double *dense, int worker) {
         barrier_slip_tangent(w->b, c, w->b->felt[s].part, w->u, local);
     else if (w->friction)
         barrier_slip_hessian(w->b, c, &w->b->rub[s], w->u, local);
+    else if (w->b->touch > 0)
+        barrier_join_hessian(w->b, c, local);
     else
         barrier_contact_hessian(w->b, c, w->project, local);
     spread(w, c, local, total, dense);

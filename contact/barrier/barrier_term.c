@@ -99,6 +99,8 @@ static void take_forces(void *context, int64_t begin, int64_t end, int worker) {
             barrier_cone_gradient(w->b, c, w->u, w->local[i]);
         else if (w->friction)
             barrier_slip_gradient(w->b, c, w->u, w->local[i]);
+        else if (w->b->touch > 0)
+            barrier_join_gradient(w->b, c, w->local[i]);
         else
             barrier_contact_gradient(w->b, c, w->local[i]);
     }

@@ -142,22 +142,27 @@ static int free_way(const struct brunt_implicit *m, double *way, brunt_error *er
 }
 
 // Begins where held components are at their places and all others where the matrix at the start takes them, if that can
-// be gone to: what is drawn or turned by its end follows, instead of being torn first.
-static int lead(struct brunt_implicit *m, brunt_error *error) {
+// be gone to: what is drawn or turned by its end follows, instead of being torn first. In the first load step with what
+// touches joined: nothing presses yet that would hold it.
+static int lead(struct brunt_implicit *m, bool joined, brunt_error *error) {
     const brunt_fields *f = &m->field;
+    const bool drawn = way_left(m) > 0;
     brunt_problem problem = problem_of(m);
-    problem.condensed = NULL; // ways of what is held are of the whole matrix
+    if (drawn) problem.condensed = NULL; // ways of what is held are of the whole matrix
     brunt_newton_way way = {.way = f->step, .p = f->gradient};
     brunt_error vain = {.id = -1};
-    if (!m->leads || way_left(m) == 0) return BRUNT_OK;
+    if (!joined && !(m->leads && drawn)) return BRUNT_OK;
+    if (joined) brunt_barrier_join(m->contact.barrier, true);
     const int status = brunt_newton_lead(&m->newton, &m->team, &problem, &m->options, f->u, &way, &vain);
+    if (joined) brunt_barrier_join(m->contact.barrier, false);
     m->tried.factorisations += way.factorisations;
     if (status) return BRUNT_OK;
     memcpy(f->step, f->gradient, (size_t)brunt_implicit_components(m) * sizeof *f->step);
     double part;
     if (free_part(m, &part, error)) return BRUNT_FAILED;
-    for (int64_t k = 0; k < brunt_implicit_components(m) && part == 1; k++)
-        f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : f->step[k];
+    if (drawn && part < 1) return BRUNT_OK; // held components go all the way
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++)
+        f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : part * f->step[k];
     return BRUNT_OK;
 }
 
@@ -370,7 +375,8 @@ static int solve_step(brunt_world *world, double dt, const double *guess, brunt_
     int status = begin_try(world, dt, error);
     if (status && m->holds && m->rows.too_far) report->result = BRUNT_NEWTON_BLOCKED; // a shorter step may do
     if (!status && guess) memcpy(m->field.u, guess, (size_t)brunt_implicit_components(m) * sizeof *guess);
-    if (!status && !guess) status = lead(m, error);
+    const bool joined = m->still && m->contact.reach > 0 && world->clock.steps == 0;
+    if (!status && !guess) status = lead(m, joined, error);
     if (!status && !guess) status = coast(m, error);
     if (!status) status = m->still && m->rubs ? go_and_rub(m, report, error) : go_and_minimise(m, report, error);
     if (!status && m->holds) status = settle(m, report, error);

@@ -89,10 +89,11 @@ START_TEST(hexagonal_packings_settle) {
 END_TEST
 
 // Disks with round rims that touch as it begins, moduli drawn: in few iterations, whatever the draw and the friction.
-// The first load step is solved roughly to tell the length of contacts, and goes on from there.
+// The first load step is solved roughly to tell the length of contacts, from where what touches would go if it were
+// joined, and goes on from there.
 START_TEST(round_rims_settle_soon) {
     static const double mu[] = {0, 0.1, 0.5};
-    static const int most[] = {14, 65, 28}; // in the first load step; 17, 89 and 37 where it begins anew
+    static const int most[] = {7, 12, 7}; // in the first load step; 14, 65 and 28 where nothing is joined
     double iterations[ROWS], body[ROWS];
     char words[1000];
     small_put("square.yaml", square);
@@ -116,6 +117,24 @@ START_TEST(round_rims_settle_soon) {
             printf("  round rims, friction %g, seed %d: %g iterations, then %g\n", mu[k], seed, iterations[1],
                    iterations[last]);
         }
+}
+END_TEST
+
+// A hundred times the load: where joined disks would go by it is inside of each other, and they begin where none is.
+START_TEST(joined_disks_stay_outside) {
+    static const char words[] =
+        "run square.yaml -t 1 -q -o out --set bodies.grains.crowd.lattice=hex --set bodies.grains.crowd.gap=0 --set "
+        "'bodies.top.shape.box={min: [0.1 mm, 27.3206 mm], max: [30.1 mm, 32.3206 mm]}' --set "
+        "'bodies.right.shape.box={min: [30 mm, 0.1 mm], max: [35 mm, 27.4 mm]}' --set bodies.grains.size=0.98e-3 --set "
+        "bodies.top.size=20e-3 --set bodies.right.size=20e-3 --set 'contact={method: penalty, surface: arcs, friction: "
+        "0.5, pairs: [{between: [grains, top], friction: 0}, {between: [grains, right], friction: 0}, {between: [top, "
+        "right], method: none}]}' --set 'newton={tolerance: 1e-10, iterations: 200, cut: 0}' --set "
+        "'boundaries[2].traction=[0, -300 kPa]' --set 'boundaries[3].traction=[-300 kPa, 0]'";
+    double x[ROWS];
+    small_put("square.yaml", square);
+    small_expect(words, 0, NULL);
+    const int last = read_column("out", "wall.left.force_x", x) - 1;
+    ck_assert_double_eq_tol(x[last], 300e3 * 27.4e-3 - 30, 0.1 * 300e3 * 27.4e-3);
 }
 END_TEST
 
@@ -409,6 +428,7 @@ int main(void) {
     tcase_add_test(tests, hard_packings_settle_or_say_why);
     tcase_add_test(tests, hard_hexagons_settle);
     tcase_add_test(tests, what_touches_nothing);
+    tcase_add_test(tests, joined_disks_stay_outside);
     tcase_add_test(tests, load_is_turned_round);
     tcase_add_test(tests, packings_without_loads_come_apart);
     tcase_add_test(tests, what_slides_apart_is_told);

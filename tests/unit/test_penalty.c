@@ -457,6 +457,93 @@ START_TEST(a_rim_that_is_pressed_flat_is_flat) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------------- joined
+
+// A point of area .02 above a floor, or a plane: joined it pushes and pulls by k times the gap, and along the surface
+// as well where there is friction; from a millionth of the shortest edge on it does not, and never without.
+static void check_joined(bool plane, double friction, double gap, bool joined) {
+    static const double floor[][2] = {{5, 0}, {-5, 0}, {0, -5}}, area = 0.02;
+    barrier_case *c = case_begin(2);
+    uint64_t state = 1;
+    case_polygon(c, 0, floor, 3);
+    case_particle(c, (double[3]){0.3, 0, 0}, area, 1, 1, &state);
+    if (plane)
+        c->plane[c->planes++] = (brunt_barrier_plane){.normal = {0, 1},
+                                                      .node = -1,
+                                                      .stiffness = K,
+                                                      .friction = friction,
+                                                      .slip_speed = 1e-6,
+                                                      .energy = brunt_penalty_at,
+                                                      .reach = REACH};
+    else
+        overlapping(c, 0, 1, 0)->friction = friction;
+    case_ready(c);
+    double *u = case_unknowns(c), *g = case_unknowns(c);
+    const brunt_term term = brunt_barrier_term(c->barrier);
+    const int64_t own = c->particle_node[0] * 2, all = c->nodes * 2;
+    u[own + 1] = gap;
+    if (joined) brunt_barrier_join(c->barrier, true);
+    case_look(c, u, NULL);
+    case_gradient(c, term, u, g);
+    double *h = take_dense(c, term, u);
+    const bool within = gap < 5e-6, both = joined && within;
+    const double stiff = both || gap < 0 ? area * K : 0;
+    ck_assert_double_eq_tol(g[own + 1], stiff * gap, 1e-9 * area * K * fabs(gap));
+    ck_assert_double_eq(g[own], 0);
+    ck_assert_double_eq_tol(h[(own + 1) * all + own + 1], stiff, 1e-9 * area * K);
+    ck_assert_double_eq_tol(h[own * all + own], both && friction > 0 ? stiff : 0, 1e-9 * area * K);
+    for (int64_t i = 0; i < all && !plane; i++) { // a translation of both does nothing
+        double sum = 0;
+        for (int64_t j = i % 2; j < all; j += 2) sum += h[i * all + j];
+        ck_assert_double_eq_tol(sum, 0, 1e-9 * area * K);
+    }
+    // And nothing stays of it.
+    if (joined) brunt_barrier_join(c->barrier, false);
+    case_look(c, u, NULL);
+    case_gradient(c, term, u, g);
+    ck_assert_double_eq_tol(g[own + 1], gap < 0 ? area * K * gap : 0, 1e-9 * area * K * fabs(gap));
+    free(u), free(g), free(h), case_end(c);
+}
+
+START_TEST(joined_surfaces_hold_both_ways) {
+    static const double gap[] = {-1e-3, -1e-7, -1e-17, 1e-17, 1e-7, 9e-6, 1e-3}, friction[] = {0, 0.3};
+    for (int plane = 0; plane < 2; plane++)
+        for (int k = 0; k < 2; k++)
+            for (size_t i = 0; i < sizeof gap / sizeof *gap; i++)
+                for (int joined = 0; joined < 2; joined++) check_joined(plane, friction[k], gap[i], joined);
+}
+END_TEST
+
+// Two circles that touch are joined wherever on their rims they do, by little more than one place of each.
+START_TEST(circles_that_touch_are_joined) {
+    for (int turn = 0; turn < 16; turn++) {
+        barrier_case *c = case_begin(2);
+        double x[32][2];
+        c->round = true;
+        for (int body = 0; body < 2; body++) {
+            for (int i = 0; i < 32; i++) {
+                const double angle = 2 * PI * (i + (body ? 0.11 : 1.0 / 16) * turn) / 32;
+                x[i][0] = cos(angle), x[i][1] = 2 * body + sin(angle);
+            }
+            case_polygon(c, body, (const double(*)[2])x, 32);
+        }
+        overlapping(c, 0, 1, 0);
+        case_ready(c);
+        double *u = case_unknowns(c), sum = 0;
+        brunt_barrier_join(c->barrier, true);
+        case_look(c, u, NULL);
+        const int64_t all = c->nodes * 2;
+        double *h = take_dense(c, brunt_barrier_term(c->barrier), u);
+        for (int64_t i = 0; i < 32; i++)
+            for (int64_t j = 0; j < 32; j++) sum += h[(2 * i + 1) * all + 2 * j + 1];
+        const double place = K * 2 * sin(PI / 32) / 4 / 2; // half of what a point between vertices stands for
+        ck_assert_double_ge(sum, 0.99 * place);
+        ck_assert_double_le(sum, 4.01 * place);
+        free(u), free(h), case_end(c);
+    }
+}
+END_TEST
+
 // 1 / E* is the sum of those of both; a plane's is 0.
 START_TEST(stiffness_is_twenty_of_what_gives) {
     ck_assert_double_eq_tol(brunt_penalty_default_stiffness(3e6, 6e6, 0.01), 20 * 2e6 / 0.01, 1);
@@ -480,6 +567,8 @@ int main(void) {
     tcase_add_test(tests, round_disks_push_as_they_do_however_they_are_turned);
     tcase_add_test(tests, sides_and_corners_stay);
     tcase_add_test(tests, a_rim_that_is_pressed_flat_is_flat);
+    tcase_add_test(tests, joined_surfaces_hold_both_ways);
+    tcase_add_test(tests, circles_that_touch_are_joined);
     tcase_add_test(tests, stiffness_is_twenty_of_what_gives);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
