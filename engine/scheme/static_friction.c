@@ -23,7 +23,7 @@
 // Of the forces that act; of what was left when it was in vain; of what is left, in a round.
 static const double NEAR = 0.5, NEARER = 0.5, ENOUGH = 0.03, NO_LESS = 0.9;
 enum { AT_ONCE = 3, LONG = 12 }; // iterations
-enum { VAIN = 4 };               // rounds
+enum { VAIN = 2 };               // rounds
 
 typedef struct rubbing {
     struct brunt_implicit *m;
