@@ -13,8 +13,8 @@ static const char *const round_set[] = {
 static const char *const mirrored_set[] = {
     "grid.cell=6 cm", "bodies.grains.shape={polygon: {points: [[0, 0], [-0.15, 0], [-0.495, 0.6], [0, 0.6]]}}",
     "boundaries[1]={name: middle, plane: {point: [0, 0], normal: [-1, 0]}, condition: symmetry}",
-    "boundaries[2]={name: cone, line: {closed: true, points: [[-0.15, 0], [-0.25, 0.01], [-0.665, 0.72], [-0.565, "
-    "0.72]]}, condition: separate, displacement: [0, 1.2 m], table: [[0 s, 0], [6 s, 1]]}"};
+    ("boundaries[2]={name: cone, line: {closed: true, points: [[-0.15, 0], [-0.25, 0.01], [-0.665, 0.72], [-0.565, "
+     "0.72]]}, condition: separate, displacement: [0, 1.2 m], table: [[0 s, 0], [6 s, 1]]}")};
 static const char *const implicit_set[] = {"grid.cell=6 cm", "time={scheme: implicit, end: 6 s, step: 4 ms}"};
 
 static const double corner[CORNERS][2] = {{0.565, 0.72}, {0.665, 0.72}, {0.25, 0.01}, {0.15, 0}}, SPEED = 0.2;
