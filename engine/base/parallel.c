@@ -33,6 +33,26 @@ static _Thread_local brunt_gain gains; // of what this thread starts
 
 void brunt_parallel_adapt(bool on) { adapts = on; }
 
+static atomic_int lent;           // threads at work beside the phases
+static _Thread_local bool beside; // this one is such a thread
+
+static void lend(int threads) { atomic_fetch_add_explicit(&lent, threads, memory_order_relaxed); }
+
+void brunt_parallel_beside(bool on) {
+    if (on != beside) lend(on ? 1 : -1);
+    beside = on;
+}
+
+void brunt_parallel_idle(bool on) {
+    if (beside) lend(on ? -1 : 1);
+}
+
+// Of so many as are asked for, those that are not lent.
+static int threads_left(int threads) {
+    const int left = threads - atomic_load_explicit(&lent, memory_order_relaxed);
+    return left > 1 ? left : 1;
+}
+
 static void run_alone(const phase *p, span *spans) {
     spans[0].begin = brunt_clock();
     p->task(p->context, 0, p->count, 0);
@@ -103,6 +123,7 @@ static void run(int threads, const phase *p, brunt_timer *timer) {
 
 void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer) {
     if (count <= 0) return;
+    threads = threads_left(threads);
     const int64_t pieces = (count + grain - 1) / grain;
     const phase p = {count, grain, task, context};
     // A thread that gets less than a few pieces costs more to wake and wait for than it saves.
@@ -111,6 +132,7 @@ void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *ta
 
 void brunt_parallel_each(int threads, int64_t count, brunt_task_fn *task, void *context, brunt_timer *timer) {
     if (count <= 0) return;
+    threads = threads_left(threads);
     const phase p = {count, 1, task, context};
     run(threads > count ? (int)count : threads, &p, timer);
 }

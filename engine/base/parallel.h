@@ -29,5 +29,12 @@ int brunt_threads_available(void);
 // from now on, by whichever thread. Off at first: what is asked for is what is used.
 void brunt_parallel_adapt(bool on);
 
+// This thread is at work beside the phases that others start, until it says off: they take one thread fewer each, one
+// at least, so that with it there are no more at work than were asked for.
+void brunt_parallel_beside(bool on);
+// Such a thread waits for the disk, and the phases have all their threads meanwhile. Of any other thread it does
+// nothing.
+void brunt_parallel_idle(bool on);
+
 // Monotonic time [s].
 double brunt_clock(void);

@@ -9,9 +9,19 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 static int system_error(brunt_error *error, const char *what, const char *path) {
     return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot %s: %s", path, what, strerror(errno));
+}
+
+int brunt_sync_data(int descriptor, bool all) {
+    brunt_parallel_idle(true);
+    const int failed = all ? fsync(descriptor) : fdatasync(descriptor);
+    const int reason = errno;
+    brunt_parallel_idle(false);
+    errno = reason;
+    return failed;
 }
 
 static int sync_folder_of(const char *path, brunt_error *error) {
@@ -29,7 +39,7 @@ static int sync_folder_of(const char *path, brunt_error *error) {
     int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) return system_error(error, "open the folder", folder);
     // Some file systems cannot sync a folder (EINVAL, ENOTSUP): their renames are as lasting as they get.
-    int status = fsync(descriptor) && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
+    int status = brunt_sync_data(descriptor, true) && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
     if (status) system_error(error, "flush the folder", folder);
     close(descriptor);
     return status ? BRUNT_IO_ERROR : BRUNT_OK;
@@ -75,7 +85,7 @@ int brunt_atomic_flush(brunt_atomic_file *file, brunt_error *error) {
     errno = 0;
     // An earlier write may have failed unseen (it left the stream's error flag): flushing again gives its errno again.
     bool failed = ferror(file->stream) != 0;
-    failed = fflush(file->stream) != 0 || failed || fsync(fileno(file->stream)) != 0;
+    failed = fflush(file->stream) != 0 || failed || brunt_sync_data(fileno(file->stream), true) != 0;
     if (failed && errno == 0) errno = EIO;
     if (failed) {
         int status = system_error(error, "write the file", file->path);

@@ -34,6 +34,9 @@ void brunt_atomic_abandon(brunt_atomic_file *file);
 // `path` is no error.
 int brunt_keep_backup(const char *path, const char *backup, brunt_error *error);
 
+// fsync, or without `all` fdatasync: what it says. A thread at work beside the steps lends them its own meanwhile.
+int brunt_sync_data(int descriptor, bool all);
+
 // Makes a folder and those above it.
 int brunt_make_folder(const char *path, brunt_error *error);
 // "folder/name" into `out`; BRUNT_IO_ERROR when it is longer than BRUNT_PATH_LENGTH.

@@ -234,7 +234,7 @@ int brunt_output_refuse(const brunt_output_folder *out, const brunt_obstacles *f
 static int append(brunt_output_folder *out, const char *text, size_t length, brunt_error *error) {
     if (lseek(out->index, 0, SEEK_END) < 0) return system_error(out, list_name, "write the file", error);
     errno = ENOSPC; // of a write that is cut short
-    if (write(out->index, text, length) != (ssize_t)length || fdatasync(out->index))
+    if (write(out->index, text, length) != (ssize_t)length || brunt_sync_data(out->index, false))
         return system_error(out, list_name, "write the file", error);
     return BRUNT_OK;
 }

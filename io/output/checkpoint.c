@@ -55,40 +55,80 @@ static hid_t memory_type(char letter) {
                            : H5T_NATIVE_UINT8;
 }
 
+// ---------------------------------------------------------------------------------------------------- taking
+
+typedef struct taken_block {
+    brunt_state_block info;
+    void *values;
+} taken_block;
+
+struct brunt_checkpoint {
+    brunt_run_state run;
+    double time; // [s]
+    int64_t step, particles, elements;
+    int32_t count;
+    taken_block block[];
+};
+
+brunt_checkpoint *brunt_checkpoint_take(brunt_world *world, const brunt_run_state *state, brunt_error *error) {
+    const int32_t count = brunt_state_count(world);
+    brunt_checkpoint *c = brunt_alloc(sizeof *c + sizeof *c->block * (size_t)count);
+    bool fits = c != NULL;
+    for (int32_t b = 0; b < count && fits; b++, c->count++) {
+        taken_block *block = &c->block[b];
+        block->info = brunt_state_info(world, b);
+        const element_type *type = find_type(block->info.type);
+        BRUNT_ASSERT(type);
+        fits = (block->values = brunt_alloc(type->bytes * (size_t)block->info.count));
+        if (fits) brunt_state_get(world, b, block->values);
+    }
+    if (!fits) {
+        brunt_fail(error, BRUNT_FAILED, "out of memory for a checkpoint");
+        brunt_checkpoint_release(c);
+        return NULL;
+    }
+    c->run = *state;
+    c->time = brunt_world_time(world), c->step = brunt_world_steps(world);
+    c->particles = brunt_world_particles(world), c->elements = brunt_world_elements(world);
+    return c;
+}
+
+void brunt_checkpoint_release(brunt_checkpoint *c) {
+    for (int32_t b = 0; c && b < c->count; b++) brunt_free(c->block[b].values);
+    brunt_free(c);
+}
+
 // ---------------------------------------------------------------------------------------------------- writing
 
-static int put_state(hid_t file, brunt_world *world, const char *path, brunt_error *error) {
-    int32_t count = brunt_state_count(world);
-    for (int32_t b = 0; b < count; b++) {
-        brunt_state_block block = brunt_state_info(world, b);
-        const element_type *type = find_type(block.type);
-        BRUNT_ASSERT(type);
-        void *values = brunt_alloc(type->bytes * (size_t)block.count);
-        if (!values) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
-        brunt_state_get(world, b, values);
+// Each block is given back once HDF5 has it: in all there is little more than one copy of the state.
+static int put_state(hid_t file, brunt_checkpoint *c, const char *path, brunt_error *error) {
+    for (int32_t b = 0; b < c->count; b++) {
+        taken_block *block = &c->block[b];
         char name[DATASET_NAME];
-        snprintf(name, sizeof name, "/state/%s", block.name);
-        bool ok =
-            brunt_hdf5_put(file, name, file_type(block.type), memory_type(block.type), (hsize_t)block.count, values);
-        brunt_free(values);
-        if (!ok) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not store the block '%s'", path, block.name);
+        snprintf(name, sizeof name, "/state/%s", block->info.name);
+        bool ok = brunt_hdf5_put(file, name, file_type(block->info.type), memory_type(block->info.type),
+                                 (hsize_t)block->info.count, block->values);
+        brunt_free(block->values);
+        block->values = NULL;
+        if (!ok)
+            return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not store the block '%s'", path, block->info.name);
     }
     return BRUNT_OK;
 }
 
-static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text, const brunt_run_state *state) {
+static bool put_run_state(hid_t file, const brunt_checkpoint *c, const char *scene_text) {
+    const brunt_run_state *state = &c->run;
     return brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
            brunt_hdf5_put_text(file, "precision", BRUNT_REAL_NAME) &&
            brunt_hdf5_put_integer(file, "lanes", BRUNT_LANES) &&
-           brunt_hdf5_put_integer(file, "state_blocks", brunt_state_count(world)) &&
-           brunt_hdf5_put_integer(file, "step", brunt_world_steps(world)) &&
-           brunt_hdf5_put_integer(file, "particles", brunt_world_particles(world)) &&
-           brunt_hdf5_put_integer(file, "elements", brunt_world_elements(world)) &&
+           brunt_hdf5_put_integer(file, "state_blocks", c->count) && brunt_hdf5_put_integer(file, "step", c->step) &&
+           brunt_hdf5_put_integer(file, "particles", c->particles) &&
+           brunt_hdf5_put_integer(file, "elements", c->elements) &&
            brunt_hdf5_put_integer(file, "history_lines", state->history_lines) &&
            brunt_hdf5_put_integer(file, "history_hash", (long long)state->history_hash) &&
            brunt_hdf5_put_integer(file, "mesh_hash", (long long)state->mesh_hash) &&
            brunt_hdf5_put_integer(file, "run", (long long)brunt_checkpoint_identity(scene_text, state->mesh_hash)) &&
-           brunt_hdf5_put_number(file, "time", brunt_world_time(world)) &&
+           brunt_hdf5_put_number(file, "time", c->time) &&
            brunt_hdf5_put_number(file, "wall_seconds", state->wall_seconds) &&
            brunt_hdf5_put_number(file, "cpu_seconds", state->cpu_seconds) &&
            brunt_hdf5_put_number(file, "step_seconds", state->step_seconds) &&
@@ -101,17 +141,15 @@ static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text
            brunt_hdf5_put(file, "/scene", H5T_STD_U8LE, H5T_NATIVE_UINT8, (hsize_t)strlen(scene_text), scene_text);
 }
 
-int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *world, const char *scene_text,
-                           const brunt_run_state *state, brunt_error *error) {
-    size_t expected = 65536 + strlen(scene_text) + sizeof(double) * (size_t)state->picture_count;
-    for (int32_t b = 0; b < brunt_state_count(world); b++) {
-        brunt_state_block block = brunt_state_info(world, b);
-        expected += 4096 + (size_t)block.count * (block.type == 'b' ? 1 : block.type == 'f' ? 4 : 8);
-    }
+int brunt_checkpoint_put(brunt_checkpoint *c, const char *path, const char *backup, const char *scene_text,
+                         brunt_error *error) {
+    size_t expected = 65536 + strlen(scene_text) + sizeof(double) * (size_t)c->run.picture_count;
+    for (int32_t b = 0; b < c->count; b++)
+        expected += 4096 + (size_t)c->block[b].info.count * find_type(c->block[b].info.type)->bytes;
     hid_t file = brunt_hdf5_create(expected);
     if (file < 0) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not start the file", path);
-    int status = put_state(file, world, path, error);
-    if (!status && !put_run_state(file, world, scene_text, state))
+    int status = put_state(file, c, path, error);
+    if (!status && !put_run_state(file, c, scene_text))
         status = brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not put the file together", path);
     if (status) {
         H5Fclose(file);

@@ -25,9 +25,14 @@ typedef struct brunt_run_state {
 
 void brunt_run_state_free(brunt_run_state *state);
 
-// Writes `path`; a file already there is kept as `backup`.
-int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *world, const char *scene_text,
-                           const brunt_run_state *state, brunt_error *error);
+// The state of a world and its run, taken: written later, it is what was there then, but for the times of pictures,
+// which stay the run's. NULL and BRUNT_FAILED: there is no memory for it.
+typedef struct brunt_checkpoint brunt_checkpoint;
+brunt_checkpoint *brunt_checkpoint_take(brunt_world *world, const brunt_run_state *state, brunt_error *error);
+// Writes it to `path`, once; a file already there is kept as `backup`. Looks at no world.
+int brunt_checkpoint_put(brunt_checkpoint *checkpoint, const char *path, const char *backup, const char *scene_text,
+                         brunt_error *error);
+void brunt_checkpoint_release(brunt_checkpoint *checkpoint); // may be NULL
 
 // A number for what a run computes: the scene less what may change between its legs, and its meshes. In the checkpoint
 // and the history.

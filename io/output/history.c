@@ -584,7 +584,7 @@ int brunt_history_open_csv(brunt_history *history, const char *path, brunt_error
 }
 
 int brunt_history_sync(const brunt_history *history, brunt_error *error) {
-    if (!history->csv || !fdatasync(fileno(history->csv))) return BRUNT_OK;
+    if (!history->csv || !brunt_sync_data(fileno(history->csv), false)) return BRUNT_OK;
     return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", history->csv_path, strerror(errno));
 }
 

@@ -47,6 +47,9 @@ int brunt_history_read(const brunt_history *history, const char *name, const dou
 // The same, or NULL.
 const double *brunt_history_column(const brunt_history *history, const char *name);
 
+// The history with the lines there are now, to be written while others come; it stands on `history`, whose lines go to
+// history.csv. Freed with brunt_free. NULL and BRUNT_FAILED: out of memory.
+brunt_history *brunt_history_still(const brunt_history *history, brunt_error *error);
 // Writes history.h5.
 int brunt_history_write(const brunt_history *history, const char *path, brunt_error *error);
 // Starts history.csv with all lines so far, aside and renamed; lines sampled later are appended at once.

@@ -75,6 +75,16 @@ static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_e
     return status;
 }
 
+brunt_history *brunt_history_still(const brunt_history *history, brunt_error *error) {
+    BRUNT_ASSERT(history->csv);
+    brunt_history *still = brunt_alloc(sizeof *still);
+    if (still)
+        *still = *history;
+    else
+        brunt_fail(error, BRUNT_FAILED, "out of memory for history.h5");
+    return still;
+}
+
 int brunt_history_write(const brunt_history *history, const char *path, brunt_error *error) {
     const double room = 65536 + (double)history->column_count * (4096 + 8.1 * (double)history->rows);
     brunt_atomic_file out;

@@ -33,19 +33,26 @@ typedef struct brunt_vtu_array {
 int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, const brunt_vtu_array *arrays,
                     int array_count, bool float32, brunt_error *error);
 
-// One body of a world: its ids and the named fields it has; a name it has not is left out. "default" stands for what
-// the body's method always shows. Of the first member of a crowd all of them, with their numbers as `member`.
-int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
-                         bool float32, brunt_error *error);
+// A picture of a part of a world, taken: written later, it shows what was there then. NULL and BRUNT_FAILED: there is
+// no memory for it.
+typedef struct brunt_vtu_picture brunt_vtu_picture;
+
+// One body: its ids and the named fields it has; a name it has not is left out. "default" stands for what the body's
+// method always shows. Of the first member of a crowd all of them, with their numbers as `member`.
+brunt_vtu_picture *brunt_vtu_take_body(brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
+                                       brunt_error *error);
 
 // The boundary particles of a line or surface that holds material points: traction, normal, weight, piece.
-int brunt_vtu_write_boundary(const char *path, const brunt_world *world, int32_t surface, bool float32,
-                             brunt_error *error);
+brunt_vtu_picture *brunt_vtu_take_boundary(const brunt_world *world, int32_t surface, brunt_error *error);
 
 // Bodies that push each other, as the last step has left them: a line from centre to centre each (to a plate, to
 // where the other ends), with the size of the normal force, the
 // force on the first, friction, its share of the bound, and both bodies by number.
-int brunt_vtu_write_links(const char *path, brunt_world *world, bool float32, brunt_error *error);
+brunt_vtu_picture *brunt_vtu_take_links(brunt_world *world, brunt_error *error);
+
+// Writes it (brunt_vtu_write). Looks at no world.
+int brunt_vtu_put(const char *path, const brunt_vtu_picture *picture, bool float32, brunt_error *error);
+void brunt_vtu_release(brunt_vtu_picture *picture); // may be NULL
 
 // Says what a .vtu or .pvd file holds.
 int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error);

@@ -1,9 +1,8 @@
 // Pictures of what bodies do to each other: a line from centre to centre for each two that push.
 #include <math.h>
 
-#include "base/error.h"
-#include "base/memory.h"
-#include "io/output/vtu.h"
+#include "base/array.h"
+#include "io/output/vtu_picture.h"
 
 enum { LINE = 3 }; // VTK's number
 
@@ -51,14 +50,7 @@ static void fill(brunt_world *world, int32_t links, link_arrays *to) {
     }
 }
 
-static int write_arrays(const char *path, const brunt_world *world, const link_arrays *all, int32_t links, bool float32,
-                        brunt_error *error) {
-    const brunt_vtu_grid grid = {.point_count = 2 * all->count,
-                                 .cell_count = all->count,
-                                 .points = all->point,
-                                 .cells = all->cell,
-                                 .cell_nodes = 2,
-                                 .cell_type = LINE};
+static void show(brunt_vtu_picture *picture, const link_arrays *all, int32_t links) {
     const brunt_vtu_array shown[] = {
         {.name = "normal", .components = 1, .values = all->normal, .at_cells = true},
         {.name = "force", .components = 3, .values = all->force, .at_cells = true},
@@ -67,24 +59,31 @@ static int write_arrays(const char *path, const brunt_world *world, const link_a
         {.name = "body_a", .components = 1, .integers = all->body, .at_cells = true},
         {.name = "body_b", .components = 1, .integers = all->body + links, .at_cells = true},
     };
-    return brunt_vtu_write(path, brunt_world_time(world), &grid, shown, sizeof shown / sizeof *shown, float32, error);
+    picture->grid = (brunt_vtu_grid){.point_count = 2 * all->count,
+                                     .cell_count = all->count,
+                                     .points = all->point,
+                                     .cells = all->cell,
+                                     .cell_nodes = 2,
+                                     .cell_type = LINE};
+    for (size_t a = 0; a < BRUNT_COUNT(shown); a++) brunt_vtu_add(picture, shown[a]);
 }
 
-int brunt_vtu_write_links(const char *path, brunt_world *world, bool float32, brunt_error *error) {
+brunt_vtu_picture *brunt_vtu_take_links(brunt_world *world, brunt_error *error) {
+    static const char what[] = "links";
     int32_t links;
     brunt_world_links(world, &links);
     const size_t n = (size_t)links + 1;
-    double *values = brunt_alloc(n * 12 * sizeof *values);
-    link_arrays all = {.body = brunt_alloc(2 * n * sizeof *all.body), .cell = brunt_alloc(2 * n * sizeof *all.cell)};
-    int status = BRUNT_FAILED;
-    if (values && all.body && all.cell) {
-        all.point = values, all.force = values + 6 * n, all.normal = values + 9 * n;
-        all.friction = values + 10 * n, all.share = values + 11 * n;
-        fill(world, links, &all);
-        status = write_arrays(path, world, &all, links, float32, error);
-    } else {
-        brunt_fail(error, BRUNT_FAILED, "out of memory for the picture of links");
+    brunt_vtu_picture *picture = brunt_vtu_start(world, what, error);
+    double *values = picture ? brunt_vtu_alloc(picture, n * 12 * sizeof *values, what, error) : NULL;
+    link_arrays all = {.body = values ? brunt_vtu_alloc(picture, 2 * n * sizeof *all.body, what, error) : NULL};
+    if (all.body) all.cell = brunt_vtu_alloc(picture, 2 * n * sizeof *all.cell, what, error);
+    if (!all.cell) {
+        brunt_vtu_release(picture);
+        return NULL;
     }
-    brunt_free(values), brunt_free(all.body), brunt_free(all.cell);
-    return status;
+    all.point = values, all.force = values + 6 * n, all.normal = values + 9 * n;
+    all.friction = values + 10 * n, all.share = values + 11 * n;
+    fill(world, links, &all);
+    show(picture, &all, links);
+    return picture;
 }

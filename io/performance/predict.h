@@ -21,7 +21,7 @@ typedef struct brunt_prediction {
     double first_step;      // [s] of the world's time
     double steps;           // of the whole run
     double step_seconds;    // [s] of the clock in them
-    double output_seconds;  // [s] pictures, history, checkpoints
+    double output_seconds;  // [s] that pictures, history, checkpoints hold the steps up
     double pictures, lines; // of bodies together, and of the history
     double picture_bytes, line_bytes,
         checkpoint_bytes; // [B] of all of them on the disk; pictures before they are compressed

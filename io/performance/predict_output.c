@@ -107,17 +107,25 @@ int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_his
         bytes += one;
         most = fmax(most, one);
     }
+    const int threads = brunt_world_threads(world);
     double columns = brunt_history_column_count(history), checkpoints = isinf(o->checkpoint) ? 1 : 2;
     if (o->checkpoint == 0) checkpoints = fmax(pictures, 1);
     double state = state_bytes(world), fresh, replaced;
     commit_seconds(&fresh, &replaced);
-    out->output_seconds =
-        pictures * (bytes / picture_rate + brunt_body_count(world) * (file_seconds + fresh) + file_seconds + replaced) +
-        lines * (line + columns * cell_seconds) +
-        checkpoints * (state / checkpoint_rate + 2 * (file_seconds + replaced)) + 2 * columns * column_seconds;
-    // Of a picture, one body at a time, the values are doubles before they are written, whatever its width; HDF5 builds
-    // a checkpoint in memory, which it lets grow by doubling.
+    const double work = pictures * bytes / picture_rate + checkpoints * state / checkpoint_rate,
+                 disk = pictures * (brunt_body_count(world) * (file_seconds + fresh) + file_seconds + replaced) +
+                        checkpoints * 2 * (file_seconds + replaced) + 2 * columns * column_seconds;
+    out->output_seconds = lines * (line + columns * cell_seconds);
+    // Beside the steps files take a thread from them while they are made, and time of their own where steps are through
+    // before them.
+    if (threads > 1)
+        out->output_seconds += work / threads + fmax(0, work + disk - out->step_seconds);
+    else
+        out->output_seconds += work + disk;
+    // Of a picture, one body at a time, or all where steps go on, the values are doubles before they are written,
+    // whatever its width; HDF5 builds a checkpoint in memory, which it lets grow by doubling.
     // Of the history a block of lines, and the columns that measures ask for with that of time.
+    if (threads > 1) most = bytes;
     *buffer_bytes = (o->float32 ? 2 : 1) * most * (pictures > 0) + 2 * state + block_bytes +
                     8 * lines * (1 + (double)scene->measure_count);
     out->pictures = pictures;

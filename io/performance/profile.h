@@ -28,7 +28,7 @@ typedef struct brunt_profile {
     int64_t steps;                // taken by this leg of the run
     double step_seconds;          // [s] in steps ...
     double pass_seconds;          // ... of them in passes
-    double output_seconds;        // [s] spent writing
+    double output_seconds;        // [s] that outputs held the steps up
     double bandwidth, peak;       // [B/s], [flop/s] of the machine with these threads; NAN: could not be measured
     bool counted[BRUNT_COUNTERS]; // kinds that the processor counted
 } brunt_profile;

@@ -5,7 +5,6 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "io/file/atomic_file.h"
 #include "io/output/checkpoint.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -14,13 +13,11 @@
 #include "base/memory.h"
 #include "io/performance/observers.h"
 #include "io/performance/progress.h"
-#include "io/output/pvd.h"
-#include "io/run/run_folder.h"
 #include "io/output/tractions.h"
+#include "io/run/run_files.h"
 #include "io/run/summary.h"
 #include "base/parallel.h"
 #include "io/performance/trace.h"
-#include "io/output/vtu.h"
 
 // An output time counts as reached within this relative distance: two series of times may differ by rounding where they
 // meet.
@@ -40,7 +37,8 @@ typedef struct run {
     double next_picture, next_history; // [s] of the world
     double leg_start, leg_output;      // [s] of the clock, [s] written by this leg
     int64_t first_step;                // of this leg
-    double checkpoint_wall, history_wall, history_cost; // [s] when last written, [s] it took
+    double checkpoint_wall, history_wall, history_cost; // [s] when last taken, [s] it took to write
+    brunt_run_files files;
     brunt_console console;
     brunt_trace *trace; // NULL: none
     brunt_observers observers;
@@ -91,41 +89,35 @@ static int sample_history(run *r, brunt_error *error) {
     return status;
 }
 
+// All that was given is on the disk, or has failed. Pictures that are not whole do not count.
+static int settle(run *r, brunt_error *error) {
+    const int status = brunt_run_files_wait(&r->files, error);
+    r->state.picture_count = r->files.pictures;
+    r->history_cost = r->files.history_seconds;
+    return status;
+}
+
+// The same after something was given, unless that has failed already.
+static int settled(run *r, int status, brunt_error *error) {
+    brunt_error late = {0};
+    const int failed = settle(r, &late);
+    return status || !failed ? status : brunt_hand_on(error, &late);
+}
+
 static int write_picture(run *r, brunt_error *error) {
-    const brunt_output_def *output = &r->scene->output;
-    double time = brunt_world_time(r->world), start = brunt_clock();
-    int64_t number = r->state.picture_count;
-    char path[BRUNT_PATH_LENGTH], name[128];
-    int status = brunt_run_folder_list_picture(&r->output, r->world, number, error);
-    const int32_t bodies = brunt_body_count(r->world);
-    for (int32_t b = 0; b >= 0 && !status; b = brunt_picture_next(r->world, b)) {
-        brunt_picture_name(name, r->world, b, number);
-        status = path_in(r, name, path, error);
-        if (!status && b < bodies)
-            status = brunt_vtu_write_body(path, r->world, b, (const char(*)[64])output->fields, output->field_count,
-                                          output->float32, error);
-        else if (!status && brunt_picture_is_links(r->world, b))
-            status = brunt_vtu_write_links(path, r->world, output->float32, error);
-        else if (!status)
-            status = brunt_vtu_write_boundary(path, r->world, b - bodies, output->float32, error);
-    }
-    if (status) return status;
+    const double start = brunt_clock();
+    const int64_t number = r->state.picture_count;
     if (BRUNT_RESERVE_IN(r->state.picture_times, r->picture_capacity, (size_t)(number + 1), (size_t)number))
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld pictures", (long long)number);
-    r->state.picture_times[r->state.picture_count++] = time;
-    status = path_in(r, "brunt.pvd", path, error);
-    if (!status) status = brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
+    r->state.picture_times[r->state.picture_count++] = brunt_world_time(r->world);
+    int status = brunt_run_files_picture(&r->files, number, r->state.picture_times, error);
     trace_output(r, "picture", start);
     return status;
 }
 
 static int write_history(run *r, brunt_error *error) {
-    char path[BRUNT_PATH_LENGTH];
-    int status = path_in(r, "history.h5", path, error);
-    double start = brunt_clock();
-    if (!status) status = brunt_history_write(r->history, path, error);
-    r->history_wall = brunt_clock();
-    r->history_cost = r->history_wall - start;
+    const double start = r->history_wall = brunt_clock();
+    int status = brunt_run_files_history(&r->files, error);
     trace_output(r, "history file", start);
     return status;
 }
@@ -140,22 +132,15 @@ static brunt_run_state state_now(const run *r) {
     return state;
 }
 
-// The history's lines are on the disk before: a checkpoint counts them.
 static int write_checkpoint(run *r, const char *failure, brunt_error *error) {
-    char path[BRUNT_PATH_LENGTH], backup[BRUNT_PATH_LENGTH];
-    double start = brunt_clock();
-    int status = brunt_history_sync(r->history, error);
-    if (!status) status = path_in(r, "checkpoint.h5", path, error);
-    if (!status) status = path_in(r, "checkpoint.previous.h5", backup, error);
-    if (status) return status;
+    const double start = r->checkpoint_wall = brunt_clock();
     brunt_run_state state = state_now(r);
     if (failure) {
         state.failed = true;
         state.withdrawn = brunt_world_step_withdrawn(r->world);
         snprintf(state.reason, sizeof state.reason, "%s", failure);
     }
-    status = brunt_checkpoint_write(path, backup, r->world, r->scene_text, &state, error);
-    r->checkpoint_wall = brunt_clock();
+    int status = brunt_run_files_checkpoint(&r->files, &state, error);
     trace_output(r, "checkpoint", start);
     return status;
 }
@@ -168,7 +153,7 @@ static bool picture_is_here(const run *r) {
 static bool history_is_here(const run *r) { return brunt_history_time(r->history) == brunt_world_time(r->world); }
 
 // What is due after a step (or, with `last`, at the end). History first, then pictures, then the checkpoint that counts
-// them.
+// them: those of one time at most are being written beside the steps, so that memory is bounded.
 static int write_outputs(run *r, bool last, brunt_error *error) {
     const brunt_output_def *output = &r->scene->output;
     double time = brunt_world_time(r->world), start = brunt_clock();
@@ -180,9 +165,13 @@ static int write_outputs(run *r, bool last, brunt_error *error) {
     bool save_history = last || start - r->history_wall >= fmax(30, 20 * r->history_cost);
     int status = BRUNT_OK;
     if (history && !history_is_here(r)) status = sample_history(r, error);
-    if (!status && picture && !picture_is_here(r)) status = write_picture(r, error);
+    const bool shown = !picture || picture_is_here(r);
+    if (!status && (!shown || checkpoint || save_history || brunt_run_files_failed(&r->files)))
+        status = settle(r, error);
+    if (!status && !shown) status = write_picture(r, error);
     if (!status && checkpoint) status = write_checkpoint(r, NULL, error);
     if (!status && save_history) status = write_history(r, error);
+    if (!status && last) status = settle(r, error);
     if (!status && r->console.log_failed)
         status = brunt_fail(error, BRUNT_IO_ERROR, "%s/log.txt: cannot write the file", r->folder);
     if (picture || history) schedule(r);
@@ -368,11 +357,11 @@ static void finish_failed(run *r, brunt_error *error) {
     memcpy(reason, error->message, sizeof reason);
     brunt_error second = {0};
     if (error->code == BRUNT_FAILED) {
-        if (!picture_is_here(r) && write_picture(r, &second))
+        if (!picture_is_here(r) && settled(r, write_picture(r, &second), &second))
             brunt_console_print(&r->console, "no picture of the failure: %s\n", second.message);
-        if (write_checkpoint(r, reason, &second))
+        if (settled(r, write_checkpoint(r, reason, &second), &second))
             brunt_console_print(&r->console, "no checkpoint of the failure: %s\n", second.message);
-        if (write_history(r, &second))
+        if (settled(r, write_history(r, &second), &second))
             brunt_console_print(&r->console, "no history.h5 of the failure: %s\n", second.message);
     }
     if (brunt_world_step_withdrawn(r->world))
@@ -393,8 +382,10 @@ static int serve_signals(run *r, brunt_error *error) {
     bool stop = options->stop && *options->stop, save = options->save && *options->save;
     if (!stop && !save) return BRUNT_OK;
     if (save) *options->save = 0;
-    int status = write_checkpoint(r, NULL, error);
+    int status = settle(r, error);
+    if (!status) status = write_checkpoint(r, NULL, error);
     if (!status) status = write_history(r, error);
+    status = settled(r, status, error);
     if (status) return status;
     brunt_console_print(&r->console, "checkpoint at t = %.9g s, step %lld\n", brunt_world_time(r->world),
                         (long long)brunt_world_steps(r->world));
@@ -466,10 +457,23 @@ static int end_trace(run *r, int status, brunt_error *error) {
     return failed;
 }
 
+// What could not be written is of a time before that of a step that failed: the run ends as if it had been waited for.
+static int end_files(run *r, int status, brunt_error *error) {
+    brunt_error late = {0};
+    return settle(r, &late) ? brunt_hand_on(error, &late) : status;
+}
+
+static int start_files(run *r, brunt_error *error) {
+    r->files = (brunt_run_files){
+        .scene = r->scene, .world = r->world, .history = r->history, .folder = &r->output, .scene_text = r->scene_text};
+    return brunt_run_files_start(&r->files, r->state.picture_count, error);
+}
+
 static int run_made(run *r, brunt_error *error) {
     int status = r->options->resume ? restore(r, error) : BRUNT_OK;
     if (!status) status = prepare_folder(r, error);
     if (!status) status = start_observers(r, error);
+    if (!status) status = start_files(r, error);
     if (status) return status;
     r->checkpoint_wall = r->history_wall = brunt_clock();
     r->first_step = brunt_world_steps(r->world);
@@ -477,10 +481,8 @@ static int run_made(run *r, brunt_error *error) {
         brunt_console_print(&r->console, "resumed at t = %.9g s, step %lld\n", brunt_world_time(r->world),
                             (long long)brunt_world_steps(r->world));
         // Pictures later than the checkpoint are no part of the collection any more.
-        char path[BRUNT_PATH_LENGTH];
-        status = path_in(r, "brunt.pvd", path, error);
-        if (!status && r->state.picture_count)
-            status = brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
+        if (r->state.picture_count)
+            status = brunt_run_files_collection(&r->files, r->state.picture_count, r->state.picture_times, error);
     } else {
         char counts[64];
         brunt_counts(r->world, counts);
@@ -491,6 +493,7 @@ static int run_made(run *r, brunt_error *error) {
     }
     schedule(r);
     if (!status) status = loop(r, error);
+    status = end_files(r, status, error);
     if (status == BRUNT_OK) {
         char reason[64];
         snprintf(reason, sizeof reason, "reached t = %.9g s", brunt_world_time(r->world));
@@ -529,6 +532,7 @@ int brunt_run(const brunt_scene *scene, const brunt_run_options *options, brunt_
     if (!status) status = end_trace(r, run_made(r, error), error);
     if (status == BRUNT_BAD_INPUT && options->messages && !r->told) fprintf(options->messages, "%s\n", error->message);
     if (r->console.log) fclose(r->console.log);
+    brunt_run_files_end(&r->files);
     brunt_output_close(&r->output);
     brunt_run_state_free(&r->state);
     brunt_history_destroy(r->history);

@@ -8,7 +8,6 @@
 #include "base/array.h"
 #include "io/output/checkpoint.h"
 #include "base/error.h"
-#include "io/output/pvd.h"
 #include "io/run/summary.h"
 #include "io/performance/trace.h"
 
@@ -130,18 +129,18 @@ int brunt_run_folder_prepare(brunt_output_folder *folder, const brunt_run_option
     return status;
 }
 
-int brunt_run_folder_list_picture(brunt_output_folder *folder, const brunt_world *world, int64_t number,
+int brunt_run_folder_list_picture(brunt_output_folder *folder, const brunt_picture_parts *parts, int64_t number,
                                   brunt_error *error) {
     enum { AT_ONCE = 256 };
     char names[AT_ONCE][128];
     const char *pointers[AT_ONCE];
     int status = BRUNT_OK;
-    for (int32_t b = 0; b >= 0 && !status;) {
+    for (int32_t p = 0; p < parts->count && !status;) {
         int32_t count = 0;
         brunt_obstacles found = {0};
         brunt_output_obstacle(folder, "vtu/", &found);
-        for (; count < AT_ONCE && b >= 0; count++, b = brunt_picture_next(world, b)) {
-            brunt_picture_name(names[count], world, b, number);
+        for (; count < AT_ONCE && p < parts->count; count++, p++) {
+            brunt_picture_name(names[count], &parts->part[p], number);
             pointers[count] = names[count];
             brunt_output_obstacle(folder, names[count], &found);
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/file/output_folder.h"
+#include "io/output/pvd.h"
 #include "io/run/run.h"
 
 // Opens and locks the folder and looks at all that the run is going to write. BRUNT_BAD_INPUT, with nothing touched:
@@ -13,6 +14,6 @@ int brunt_run_folder_open(brunt_output_folder *folder, const brunt_scene *scene,
 // it.
 int brunt_run_folder_prepare(brunt_output_folder *folder, const brunt_run_options *options, const char *scene_text,
                              brunt_error *error);
-// Lists the picture of this number of all bodies, before they are written.
-int brunt_run_folder_list_picture(brunt_output_folder *folder, const brunt_world *world, int64_t number,
+// Lists the picture of this number in all its parts, before they are written.
+int brunt_run_folder_list_picture(brunt_output_folder *folder, const brunt_picture_parts *parts, int64_t number,
                                   brunt_error *error);

@@ -11,7 +11,7 @@ typedef struct brunt_summary {
     const char *reason;                  // why it ended
     double wall_seconds, cpu_seconds;    // [s] over all legs of the run
     double step_seconds;                 // [s] wall time inside time steps: what the rates are made of
-    double output_seconds;               // [s] wall time spent writing
+    double output_seconds;               // [s] wall time that outputs held the steps up
     double peak_bytes;                   // [bytes] the most memory that the process has had: brunt_summary_peak
     const brunt_profile *profile;        // of this leg; NULL: none
     const brunt_measure_result *results; // one a measure of the scene; NULL: not evaluated

@@ -30,10 +30,18 @@ static void tear_down(void) {
     ck_assert_int_eq((int)brunt_memory_live(), 0);
 }
 
+static int write_checkpoint(const char *path, brunt_error *error) {
+    brunt_checkpoint *taken = brunt_checkpoint_take(world, &state, error);
+    ck_assert_ptr_nonnull(taken);
+    int status = brunt_checkpoint_put(taken, path, small_path("previous.h5"), text, error);
+    brunt_checkpoint_release(taken);
+    return status;
+}
+
 static const char *write_one(void) {
     brunt_error error = {0};
     const char *path = small_path("checkpoint.h5");
-    int status = brunt_checkpoint_write(path, small_path("previous.h5"), world, text, &state, &error);
+    int status = write_checkpoint(path, &error);
     ck_assert_msg(status == BRUNT_OK, "%s", error.message);
     return path;
 }
@@ -210,8 +218,7 @@ START_TEST(a_write_that_fails_loses_nothing) {
     signal(SIGXFSZ, SIG_IGN);
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &small), 0);
     brunt_error error = {0};
-    int status =
-        brunt_checkpoint_write(small_path("checkpoint.h5"), small_path("previous.h5"), world, text, &state, &error);
+    int status = write_checkpoint(small_path("checkpoint.h5"), &error);
     setrlimit(RLIMIT_FSIZE, &old);
     ck_assert_int_eq(status, BRUNT_IO_ERROR);
     ck_assert_ptr_nonnull(strstr(error.message, "File too large"));

@@ -16,8 +16,10 @@
 #include <unistd.h>
 
 static char scene_path[160];
+static const char *threads; // of runs that say nothing of theirs: with two, files are written beside the steps
 
 static void set_up(void) {
+    threads = "1";
     small_folder_make();
     snprintf(scene_path, sizeof scene_path, "%s", small_path("small.yaml"));
     small_write(scene_path, small_scene_text, sizeof small_scene_text - 1);
@@ -49,7 +51,7 @@ static pid_t start(const char *arguments, const char *output, rlim_t limit) {
     // One thread unless a test asks for more: the scene is too small for two, and many tests run beside this one.
     if (!strncmp(arguments, "run ", 4) && strstr(arguments, ".yaml") && !strstr(arguments, " -t ")) {
         words[count++] = (char *)"-t";
-        words[count++] = (char *)"1";
+        words[count++] = (char *)threads;
     }
     words[count] = NULL;
     pid_t child = fork();
@@ -141,9 +143,9 @@ static void same_results(const char *a, const char *b) {
 
 // A run that takes a second or so and writes a checkpoint with each of ten pictures.
 #ifdef __SANITIZE_ADDRESS__ // is slow as it is
-#define SLOW "-t 1 --set grid.cell=0.025 --set time.cfl=0.25 "
+#define SLOW "--set grid.cell=0.025 --set time.cfl=0.25 "
 #else
-#define SLOW "-t 1 --set grid.cell=0.0125 --set time.cfl=0.25 "
+#define SLOW "--set grid.cell=0.0125 --set time.cfl=0.25 "
 #endif
 
 START_TEST(bad_usage_is_64) {
@@ -371,6 +373,7 @@ END_TEST
 // Kills and resumes one run again and again at moments that differ from test to test, until it is through. Moments are
 // of the run's own time on a processor, so that it comes as far on any machine: SIGPROF ends it as SIGKILL does.
 START_TEST(killed_and_resumed_is_the_same_run) {
+    threads = _i ? "2" : "1";
     expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
     unsigned seed = (unsigned)time(NULL) ^ (unsigned)getpid();
     printf("kill times are drawn from seed %u\n", seed);
@@ -400,7 +403,8 @@ START_TEST(killed_and_resumed_is_the_same_run) {
 END_TEST
 
 START_TEST(asked_to_stop_is_75_and_resumes) {
-    static const int signals[] = {SIGTERM, SIGINT, SIGHUP};
+    static const int signals[] = {SIGTERM, SIGINT, SIGHUP, SIGTERM};
+    threads = _i < 3 ? "1" : "2";
     expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
     // At intervals of wall time only, so that the checkpoint is the signal's.
     pid_t child =
@@ -427,6 +431,7 @@ START_TEST(asked_to_stop_is_75_and_resumes) {
 END_TEST
 
 START_TEST(usr1_saves_and_goes_on) {
+    threads = _i ? "2" : "1";
     pid_t child = start("run %s/small.yaml -o %s/out --set output.checkpoint=none " SLOW, small_path("output"), 0);
     while (!exists("out/vtu/left_000001.vtu")) wait_seconds(0.002);
     ck_assert(!exists("out/checkpoint.h5"));
@@ -442,6 +447,7 @@ END_TEST
 
 // An energy limit below what two hundred steps of contact and transfer leave open.
 START_TEST(a_failing_run_is_70_and_leaves_what_to_look_at) {
+    threads = _i ? "2" : "1";
     expect("run %s/small.yaml -o %s/out --set time.energy_limit=1e-9", 70, "failed: ");
     json_t *summary = summary_of("out");
     ck_assert_str_eq(json_string_value(json_object_get(summary, "status")), "failed");
@@ -460,6 +466,7 @@ END_TEST
 
 // A file that may not grow beyond what a checkpoint needs: as a full disk, without needing one.
 START_TEST(a_checkpoint_that_cannot_be_written_is_74) {
+    threads = _i ? "2" : "1";
     expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
     pid_t child = start("run %s/small.yaml -o %s/out -q " SLOW, small_path("output"), 0);
     while (!exists("out/vtu/left_000004.vtu")) wait_seconds(0.002);
@@ -474,6 +481,10 @@ START_TEST(a_checkpoint_that_cannot_be_written_is_74) {
     ck_assert_msg(code == 74, "%d: %s", code, output);
     ck_assert_msg(strstr(output, "File too large") != NULL, "%s", output);
     free(output);
+    // It is told with the next picture at the latest: the run was stopped at the fourth, of ten.
+    json_t *summary = summary_of("out");
+    ck_assert_double_le(json_number_value(json_object_get(summary, "time")), 0.0601);
+    json_decref(summary);
     ck_assert_int_eq(shell("cmp %s/out/checkpoint.h5 %s/kept.h5", small_folder, small_folder), 0);
     expect("run %s/small.yaml -o %s/out -q --resume " SLOW, 0, NULL);
     same_results("whole", "out");
@@ -481,6 +492,7 @@ START_TEST(a_checkpoint_that_cannot_be_written_is_74) {
 END_TEST
 
 START_TEST(a_full_disk_is_74_and_leaves_a_whole_checkpoint) {
+    threads = _i ? "2" : "1";
     ck_assert_int_eq(mkdir(small_path("disk"), 0777), 0);
     if (geteuid() != 0 || mount("tmpfs", small_path("disk"), "tmpfs", 0, "size=6m")) {
         printf("a small disk cannot be mounted here (%s): the test of a full disk did not run\n",
@@ -533,12 +545,12 @@ int main(void) {
     tcase_add_test(commands, quiet_is_quiet_and_the_log_keeps_all);
     tcase_add_test(commands, a_fresh_run_replaces_the_old_one);
     tcase_add_test(commands, threads_change_nothing);
-    tcase_add_test(commands, killed_and_resumed_is_the_same_run);
-    tcase_add_loop_test(commands, asked_to_stop_is_75_and_resumes, 0, 3);
-    tcase_add_test(commands, usr1_saves_and_goes_on);
-    tcase_add_test(commands, a_failing_run_is_70_and_leaves_what_to_look_at);
-    tcase_add_test(commands, a_checkpoint_that_cannot_be_written_is_74);
-    tcase_add_test(commands, a_full_disk_is_74_and_leaves_a_whole_checkpoint);
+    tcase_add_loop_test(commands, killed_and_resumed_is_the_same_run, 0, 2);
+    tcase_add_loop_test(commands, asked_to_stop_is_75_and_resumes, 0, 4);
+    tcase_add_loop_test(commands, usr1_saves_and_goes_on, 0, 2);
+    tcase_add_loop_test(commands, a_failing_run_is_70_and_leaves_what_to_look_at, 0, 2);
+    tcase_add_loop_test(commands, a_checkpoint_that_cannot_be_written_is_74, 0, 2);
+    tcase_add_loop_test(commands, a_full_disk_is_74_and_leaves_a_whole_checkpoint, 0, 2);
     tcase_add_test(commands, a_damaged_checkpoint_is_65);
     suite_add_tcase(suite, commands);
     return suite_main(suite);
