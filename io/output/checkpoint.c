@@ -408,7 +408,14 @@ bool brunt_checkpoint_failed(const char *path) {
 
 // ---------------------------------------------------------------------------------------------------- describing
 
+typedef struct description {
+    FILE *out;
+    hid_t file; // how large it is, a group does not say
+} description;
+
 static herr_t describe_block(hid_t root, const char *name, const H5O_info_t *info, void *context) {
+    const description *d = context;
+    (void)root;
     if (info->type != H5O_TYPE_DATASET) return 0;
     char shown[DATASET_NAME + 1], path[DATASET_NAME + 2];
     snprintf(shown, sizeof shown, "%s", name);
@@ -416,14 +423,14 @@ static herr_t describe_block(hid_t root, const char *name, const H5O_info_t *inf
     brunt_hdf5_printable(shown);
     for (size_t t = 0; t < sizeof element_types / sizeof *element_types; t++) {
         int64_t count;
-        hid_t set = brunt_hdf5_dataset(root, path, element_types[t].class, element_types[t].bytes, &count);
+        hid_t set = brunt_hdf5_dataset(d->file, path, element_types[t].class, element_types[t].bytes, &count);
         if (set < 0) continue;
         H5Dclose(set);
-        fprintf(context, "%-56s %12lld x %-6s %12lld bytes\n", shown, (long long)count, element_types[t].name,
+        fprintf(d->out, "%-56s %12lld x %-6s %12lld bytes\n", shown, (long long)count, element_types[t].name,
                 (long long)count * (long long)element_types[t].bytes);
         return 0;
     }
-    fprintf(context, "%-56s no data that brunt reads\n", shown);
+    fprintf(d->out, "%-56s no data that brunt reads\n", shown);
     return 0;
 }
 
@@ -448,7 +455,8 @@ int brunt_checkpoint_describe(const char *path, FILE *out, brunt_error *error) {
                 state.wall_seconds);
         if (state.failed) fprintf(out, "FAILED     %s\n", state.reason);
         if (state.withdrawn) fprintf(out, "           the step has changed nothing: --resume goes on from here\n");
-        if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_block, out, H5O_INFO_BASIC) < 0)
+        description d = {out, file};
+        if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_block, &d, H5O_INFO_BASIC) < 0)
             status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);
     }
     brunt_run_state_free(&state);
