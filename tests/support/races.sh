@@ -23,3 +23,4 @@ race() {
 race test_determinism bits
 race test_surfaces same_bits_for_threads_and_restart
 race test_erosion_contact same_bits
+race test_writer writer
