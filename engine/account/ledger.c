@@ -87,7 +87,7 @@ void brunt_ledger_open(brunt_ledger *ledger, const brunt_accounts *accounts) {
 static void add_bodies(const brunt_bodies *bodies, brunt_energy *energy) {
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *body = brunt_bodies_summed(bodies, i);
-        const brunt_point_energy e = body->ops->energy(body);
+        const brunt_point_energy e = brunt_bodies_energy(bodies, body);
         energy->internal += e.internal;
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
@@ -190,7 +190,7 @@ void brunt_ledger_momentum(const brunt_ledger *now, const brunt_accounts *accoun
     double linear_here = 0, angular_here = 0, linear = 0, angular = 0;
     for (int i = 0; i < accounts->bodies->count; i++) {
         const brunt_body_ref *body = brunt_bodies_summed(accounts->bodies, i);
-        const brunt_audit a = body->ops->sums(body);
+        const brunt_audit a = brunt_bodies_sums(accounts->bodies, body);
         for (int k = 0; k < 3; k++) momentum->linear[k] += a.linear[k], momentum->angular[k] += a.angular[k];
         linear_here += a.scale_linear;
         angular_here += a.scale_angular;

@@ -1,10 +1,12 @@
 #include "body/bodies.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body) {
     const brunt_body_ref *ref = &bodies->all[body];
@@ -44,6 +46,53 @@ void brunt_bodies_points(const brunt_bodies *bodies, int body, int *first, int *
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i) {
     const bool points = i < bodies->mpm_count;
     return &bodies->all[points ? bodies->mpm[i].index : bodies->fem[i - bodies->mpm_count].index];
+}
+
+static void bound(const brunt_body_ref *body, brunt_body_measure *measure) {
+    for (int a = 0; a < 3; a++) measure->low[a] = INFINITY, measure->high[a] = -INFINITY;
+    body->ops->bounds(body, measure->low, measure->high);
+}
+
+// Two tasks a body. What sums up a mesh goes over its nodes as steps do, and writes them: nothing reads them meanwhile.
+static void measure_bodies(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_bodies *bodies = context;
+    for (int64_t t = begin; t < end; t++) {
+        const brunt_body_ref *body = &bodies->all[t / 2];
+        brunt_body_measure *measure = &bodies->measure[t / 2];
+        const bool first = t % 2 == 0;
+        if (first) {
+            measure->sums = body->ops->sums(body);
+            bound(body, measure);
+        }
+        if (first == (body->fem != NULL)) measure->energy = body->ops->energy(body);
+    }
+}
+
+void brunt_bodies_measure(brunt_bodies *bodies, int threads) {
+    if (!bodies->measure) bodies->measure = brunt_alloc(sizeof *bodies->measure * (size_t)bodies->count);
+    if (!bodies->measure) return;
+    brunt_parallel_each(threads, 2 * (int64_t)bodies->count, measure_bodies, bodies, NULL);
+    bodies->measured = true;
+}
+
+void brunt_bodies_forget(brunt_bodies *bodies) { bodies->measured = false; }
+
+brunt_audit brunt_bodies_sums(const brunt_bodies *bodies, const brunt_body_ref *body) {
+    return bodies->measured ? bodies->measure[body - bodies->all].sums : body->ops->sums(body);
+}
+
+brunt_point_energy brunt_bodies_energy(const brunt_bodies *bodies, const brunt_body_ref *body) {
+    return bodies->measured ? bodies->measure[body - bodies->all].energy : body->ops->energy(body);
+}
+
+void brunt_bodies_measure_of(const brunt_bodies *bodies, const brunt_body_ref *body, brunt_body_measure *measure) {
+    if (bodies->measured) {
+        *measure = bodies->measure[body - bodies->all];
+        return;
+    }
+    measure->sums = body->ops->sums(body), measure->energy = body->ops->energy(body);
+    bound(body, measure);
 }
 
 // Its fields, and what else it has.
@@ -93,6 +142,7 @@ void brunt_bodies_free(brunt_bodies *bodies) {
     brunt_free(bodies->tasks.node);
     brunt_free(bodies->tasks.element);
     brunt_free(bodies->tasks.sums);
+    brunt_free(bodies->measure);
 }
 
 void brunt_bodies_validate(const brunt_bodies *bodies) {

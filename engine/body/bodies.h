@@ -60,6 +60,13 @@ typedef struct brunt_fem_tasks {
     brunt_fem_sums *sums; // a node task each
 } brunt_fem_tasks;
 
+// What is summed up of a body.
+typedef struct brunt_body_measure {
+    brunt_audit sums;
+    brunt_point_energy energy;
+    double low[3], high[3]; // [m]
+} brunt_body_measure;
+
 typedef struct brunt_bodies {
     brunt_body_ref *all; // in order of name
     int count;
@@ -68,6 +75,8 @@ typedef struct brunt_bodies {
     brunt_fem_body *fem; // of elements, likewise
     int fem_count;
     brunt_mesh_report *mesh_reports; // a finite-element body each
+    brunt_body_measure *measure;     // of each, while they are `measured`; NULL: they never were
+    bool measured;
     brunt_fem_tasks tasks;
     // Of each body its first block of the state and its first array; past the last how many they all have.
     int32_t *first_block, *first_array;
@@ -87,6 +96,14 @@ void brunt_bodies_points(const brunt_bodies *bodies, int body, int *first, int *
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
 // Body `i` in the order that sums are taken in: points, then meshes, each by name.
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);
+// Sums up all of them, by `threads` threads, for what is asked until brunt_bodies_forget: meanwhile nothing may change.
+// Where there is no memory for it, each is summed up when it is asked for, with the same result.
+void brunt_bodies_measure(brunt_bodies *bodies, int threads);
+void brunt_bodies_forget(brunt_bodies *bodies);
+// The measure of one, all of it or its sums or its energy alone.
+void brunt_bodies_measure_of(const brunt_bodies *bodies, const brunt_body_ref *body, brunt_body_measure *measure);
+brunt_audit brunt_bodies_sums(const brunt_bodies *bodies, const brunt_body_ref *body);
+brunt_point_energy brunt_bodies_energy(const brunt_bodies *bodies, const brunt_body_ref *body);
 // Numbers the blocks and the arrays of all, once their fields are there. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_bodies_number(brunt_bodies *bodies, brunt_error *error);
 // The body that block or array `index` is of, by where each begins; `count`, that of the bodies: of none.

@@ -227,16 +227,19 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
 }
 
 void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {
-    const brunt_body_ref *body = &world->bodies.all[index];
-    const brunt_audit a = body->ops->sums(body);
-    const brunt_point_energy e = body->ops->energy(body);
+    brunt_body_measure measure;
+    brunt_bodies_measure_of(&world->bodies, &world->bodies.all[index], &measure);
+    const brunt_audit a = measure.sums;
+    const brunt_point_energy e = measure.energy;
     *sums = (brunt_body_sums){.mass = a.mass, .kinetic = a.kinetic, .internal = e.internal, .plastic = e.plastic};
     for (int k = 0; k < 3; k++) {
         const bool there = k < world->settings.dimension;
         sums->momentum[k] = a.linear[k];
         sums->centre[k] = a.centre[k];
         sums->velocity[k] = a.mass > 0 ? a.linear[k] / a.mass : 0;
-        sums->low[k] = there ? INFINITY : 0, sums->high[k] = there ? -INFINITY : 0;
+        sums->low[k] = there ? measure.low[k] : 0, sums->high[k] = there ? measure.high[k] : 0;
     }
-    body->ops->bounds(body, sums->low, sums->high);
 }
+
+void brunt_world_measure(brunt_world *world) { brunt_bodies_measure(&world->bodies, world->settings.threads); }
+void brunt_world_forget_measure(brunt_world *world) { brunt_bodies_forget(&world->bodies); }

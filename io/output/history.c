@@ -446,7 +446,9 @@ static int append_to_file(brunt_history *h, brunt_error *error) {
 }
 
 int brunt_history_sample(brunt_history *history, brunt_world *world, brunt_error *error) {
+    brunt_world_measure(world);
     traverse(history, world);
+    brunt_world_forget_measure(world);
     if (history->out_of_memory)
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)history->rows);
     int status = history->csv ? append_to_file(history, error) : keep_in_memory(history, error);

@@ -103,6 +103,44 @@ START_TEST(an_edge_has_what_is_beside_it) {
 }
 END_TEST
 
+// What the accounts say of two blocks, one of points and one of elements.
+typedef struct told {
+    brunt_energy energy;
+    brunt_momentum momentum;
+    brunt_body_sums sums[2];
+} told;
+
+static told ask(brunt_world *world) {
+    told all;
+    memset(&all, 0, sizeof all);
+    brunt_world_energy(world, &all.energy);
+    brunt_world_momentum(world, &all.momentum);
+    for (int b = 0; b < 2; b++) brunt_body_totals(world, b, &all.sums[b]);
+    return all;
+}
+
+// Summed up once, by one thread or more, they say the same, to the bit; and later what is so then.
+START_TEST(bodies_that_are_summed_up_at_once_have_the_same_sums) {
+    const int dimension = _i % 2 + 2;
+    brunt_world_def def = def_begin(dimension, 0.1);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    mesh(def_box(&def, "a", XYZ(0, 0, 0), XYZ(0.4, 0.4, 0.4)), dimension, 0.1);
+    def_velocity(def_box(&def, "b", XYZ(0.1, 0.41, 0.1), XYZ(0.3, 0.7, 0.3)), 0.5, -2, 0);
+    memcpy(def.gravity, XYZ(0, -10, 0), sizeof def.gravity);
+    def.threads = _i / 2 + 1;
+    brunt_world *world = world_take(&def);
+    for (int part = 0; part < 3; part++) {
+        world_steps(world, 20);
+        const told one_by_one = ask(world);
+        brunt_world_measure(world);
+        const told at_once = ask(world);
+        brunt_world_forget_measure(world);
+        ck_assert_int_eq(memcmp(&one_by_one, &at_once, sizeof one_by_one), 0);
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("accounts");
     TCase *all = tcase_create("all");
@@ -111,6 +149,7 @@ int main(void) {
     tcase_add_loop_test(all, a_wall_pushes_where_it_is_touched, 0, 4);
     tcase_add_loop_test(all, faces_that_meet_have_their_area, 0, 4);
     tcase_add_loop_test(all, an_edge_has_what_is_beside_it, 0, 4);
+    tcase_add_loop_test(all, bodies_that_are_summed_up_at_once_have_the_same_sums, 0, 4);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }

@@ -86,6 +86,10 @@ typedef struct brunt_body_sums {
 // Of what is left of body 0 <= `body` < brunt_body_count. Where nothing is: sums and velocity 0, centre of no use (0 of
 // material points, NAN of elements), low INFINITY and high -INFINITY (third components of two dimensions: bounds 0).
 void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
+// Where energy, momentum and totals of many bodies are asked for: sums all of them up once, by all threads, and answers
+// from that until it is told to forget. In between the world must not change. The numbers are the same.
+void brunt_world_measure(brunt_world *world);
+void brunt_world_forget_measure(brunt_world *world);
 
 // What has left a body, or been freed of stress, since the start.
 typedef struct brunt_eroded {
