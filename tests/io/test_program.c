@@ -491,6 +491,19 @@ START_TEST(a_checkpoint_that_cannot_be_written_is_74) {
 }
 END_TEST
 
+// The first picture cannot be written, and the first step fails: what is of the earlier time is told, as if steps had
+// waited.
+START_TEST(a_picture_that_cannot_be_written_comes_before_a_step_that_fails) {
+    threads = _i ? "2" : "1";
+    pid_t child = start("run %s/small.yaml -o %s/out -q --set time.least_step=1s " SLOW, small_path("output"), 20000);
+    int code = finish(child);
+    char *output = output_text();
+    ck_assert_msg(code == 74 && strstr(output, "left_000000.vtu"), "%d: %s", code, output);
+    free(output);
+    expect("run %s/small.yaml -o %s/other -q --set time.least_step=1s " SLOW, 70, "least_step");
+}
+END_TEST
+
 START_TEST(a_full_disk_is_74_and_leaves_a_whole_checkpoint) {
     threads = _i ? "2" : "1";
     ck_assert_int_eq(mkdir(small_path("disk"), 0777), 0);
@@ -550,6 +563,7 @@ int main(void) {
     tcase_add_loop_test(commands, usr1_saves_and_goes_on, 0, 2);
     tcase_add_loop_test(commands, a_failing_run_is_70_and_leaves_what_to_look_at, 0, 2);
     tcase_add_loop_test(commands, a_checkpoint_that_cannot_be_written_is_74, 0, 2);
+    tcase_add_loop_test(commands, a_picture_that_cannot_be_written_comes_before_a_step_that_fails, 0, 2);
     tcase_add_loop_test(commands, a_full_disk_is_74_and_leaves_a_whole_checkpoint, 0, 2);
     tcase_add_test(commands, a_damaged_checkpoint_is_65);
     suite_add_tcase(suite, commands);
