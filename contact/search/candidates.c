@@ -10,13 +10,17 @@ static const double CLEAR = 1e-4;     // mean edges: distances of boxes that tel
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a eroded surface a place is still before it
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
+int32_t brunt_candidates_front(const brunt_contact_surface *s, int32_t face) {
+    const int32_t node = s->face[face][0];
+    const bool front = !s->membrane.front || s->membrane.front[node] == node;
+    return front ? face : face - s->membrane.side[s->face_body[face]].faces;
+}
+
 // Of either side of a membrane: the same numbers for both.
 static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, const double x[3]) {
-    const int32_t node = s->face[face][0];
-    if (!s->membrane.front || s->membrane.front[node] == node) return brunt_closest_on_face(s, face, x);
-    int32_t front = face - s->membrane.side[s->face_body[face]].faces;
+    int32_t front = brunt_candidates_front(s, face);
     brunt_closest at = brunt_closest_on_face(s, front, x);
-    turn_over(s, &front, &at);
+    if (front != face) turn_over(s, &front, &at);
     return at;
 }
 
@@ -143,8 +147,9 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
         bool faces = !normal || cosine > least || (membrane && -cosine > least);
         if ((!faces && !all) || !is_among(other, what.list, what.count)) continue;
         if (membranes && other == l->body && in_patch(l, face)) continue;
-        // What is further than two of any direction, and than the nearest of its body, changes neither.
-        if (face != guess && (!all || beyond(s, s->face_box[face], l->x, all->second)) &&
+        // What is further than two of any direction, and than the nearest of its body, changes neither. Of a particle,
+        // which all facets face, the nearest of any direction is no further than that of its body.
+        if (face != guess && (!all || l->particle || beyond(s, s->face_box[face], l->x, all->second)) &&
             (!faces || (b < bodies && beyond(s, s->face_box[face], l->x, best[b].root * best[b].root))))
             continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
@@ -272,12 +277,13 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     const brunt_contact_surface *s = m->surface;
     nearest opposed[BRUNT_MAX_CANDIDATES], any[BRUNT_MAX_CANDIDATES];
     two_nearest two;
-    const double close = CLOSE * s->mean_edge, margin = MARGIN * s->mean_edge;
+    const double close = CLOSE * s->mean_edge, margin = l->particle ? 0 : MARGIN * s->mean_edge;
     out->count = 0;
     if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
-    if (membranes && guess >= 0 && is_membrane(s, s->face_body[guess])) guess = -1; // it may be on the other side now
+    if (membranes && guess >= 0 && !l->particle && is_membrane(s, s->face_body[guess]))
+        guess = -1; // it may be on the other side now
     const facet_search opposed_to_it = {l->normal, OPPOSED, l->touch, l->touches, guess, margin, &two};
     int bodies = find_nearest(s, f, l, opposed_to_it, membranes, opposed), unresolved = 0;
     int32_t entered[BRUNT_MAX_NEAR];

@@ -25,6 +25,7 @@ typedef struct candidate_list {
 typedef struct search_query {
     int32_t box, body;
     const double *x, *normal; // outward; NULL when it has none
+    bool particle; // nothing is remembered of what it sees: how far all but the nearest facet are is not asked for
     int64_t cell;
     int32_t touch[BRUNT_MAX_NEAR], touches, enter[BRUNT_MAX_NEAR], enters;
     // Where there are membranes: half its own thickness, how far behind one it may be found, and the elements of its

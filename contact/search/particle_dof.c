@@ -77,6 +77,49 @@ void brunt_particle_nodes_velocity(const brunt_particle_nodes *under, int dim, i
         for (int a = 0; a < dim; a++) v[a] += under->weight[e] * (double)under->node[e][which + a];
 }
 
+// The kernel of a particle along one axis: weights of its nodes, and where they are: in which of two blocks, and there.
+typedef struct kernel_axis {
+    double weight[4];
+    int past[4], local[4];
+} kernel_axis;
+
+static kernel_axis axis_of(const brunt_body *body, const brunt_block *block, int64_t s, int a, int local) {
+    const brunt_grid *grid = &body->grid;
+    const double x = (double)brunt_kernel_position(&body->particles)[a][s];
+    const double u = (x - grid->origin[a]) / (double)grid->h - (block->coord[a] * grid->side + local);
+    kernel_axis axis;
+    brunt_bspline_weights(grid->order, u, axis.weight);
+    for (int i = 0; i <= grid->order; i++) {
+        axis.past[i] = local + i >= grid->side;
+        axis.local[i] = local + i - axis.past[i] * grid->side;
+    }
+    return axis;
+}
+
+// Nodes in the order of brunt_particle_nodes_find, so that the sum has the same bits.
+void brunt_particle_velocity(const brunt_body *body, int32_t b, int64_t s, int which, double v[3]) {
+    const brunt_grid *grid = &body->grid;
+    const brunt_block *block = &grid->blocks[b];
+    const int n = grid->order + 1, deep = grid->dim == 3 ? n : 1;
+    kernel_axis axis[3] = {[2] = {.weight = {1}}};
+    double sum[3] = {0, 0, 0};
+    int local[3];
+    brunt_node_local(grid, body->particles.bin[s], local);
+    for (int a = 0; a < grid->dim; a++) axis[a] = axis_of(body, block, s, a, local[a]);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
+            for (int l = 0; l < deep; l++) {
+                const int side = 2 * axis[0].past[i] + axis[1].past[k];
+                const int32_t slot = block->slot[grid->dim == 3 ? 2 * side + axis[2].past[l] : side];
+                const int index = brunt_node_index(grid, axis[0].local[i], axis[1].local[k], axis[2].local[l]);
+                const real *node = brunt_slot_nodes(grid, slot) + (size_t)index * BRUNT_NODE_REALS;
+                const double weight = axis[0].weight[i] * axis[1].weight[k] * axis[2].weight[l];
+                if (!(node[BRUNT_NODE_MASS] > 0)) continue;
+                for (int a = 0; a < 3; a++) sum[a] += weight * (double)node[which + a];
+            }
+    for (int a = 0; a < 3; a++) v[a] = a < grid->dim ? sum[a] : 0;
+}
+
 // ------------------------------------------------------------------------------------------ degrees of freedom
 
 void brunt_particle_dofs_free(brunt_particle_dofs *dofs) {

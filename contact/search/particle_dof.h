@@ -36,6 +36,9 @@ void brunt_particle_nodes_add(const brunt_particle_nodes *more, double factor, b
 // The velocity there, of the reals BRUNT_NODE_VELOCITY or BRUNT_NODE_OLD [m/s].
 void brunt_particle_nodes_velocity(const brunt_particle_nodes *under, int dim, int which, double v[3]);
 
+// The same velocity of a particle, for which its nodes need not be listed.
+void brunt_particle_velocity(const brunt_body *body, int32_t b, int64_t s, int which, double v[3]);
+
 // A grid node by its degree-of-freedom node.
 typedef struct brunt_grid_dof {
     int64_t node;

@@ -33,15 +33,15 @@ typedef struct search_job {
 static int add_particle_candidate(const search_job *j, particle_list *list, int32_t b, int64_t s, const double x[3],
                                   const facet_candidate *h, brunt_error *error) {
     const brunt_contact_surface *surface = j->m->surface;
-    brunt_particle_nodes under;
-    double v[3], old[3];
-    brunt_particle_nodes_find(j->body, b, s, NULL, &under);
-    brunt_particle_nodes_velocity(&under, j->body->grid.dim, BRUNT_NODE_VELOCITY, v);
-    brunt_particle_nodes_velocity(&under, j->body->grid.dim, BRUNT_NODE_OLD, old);
+    double v[3], old[3], before = 0; // what it came with only matters to what is behind the surface
+    brunt_particle_velocity(j->body, b, s, BRUNT_NODE_VELOCITY, v);
     const double approach = brunt_node_to_facet_approach(surface, h, x, v, surface->v);
-    const double before = brunt_node_to_facet_approach(surface, h, x, old, surface->old);
     const double spring = brunt_overlap_spring(j->m, j->body, s);
     const double gap = h->gap + (spring > 0 ? brunt_overlap_limit(j->body, brunt_extent_along(j->body, s, h->n)) : 0);
+    if (gap < 0) {
+        brunt_particle_velocity(j->body, b, s, BRUNT_NODE_OLD, old);
+        before = brunt_node_to_facet_approach(surface, h, x, old, surface->old);
+    }
     const double target = brunt_node_to_facet_target(surface, gap, fmin(before, LIFT * approach), before, j->m->dt);
     if (!(spring > 0 && h->gap < 0) && !(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;
     const size_t used = (size_t)list->count;
@@ -66,13 +66,16 @@ static int search_from_block(const search_job *j, int32_t b, particle_list *list
     real *const *place = brunt_field(&j->body->particles, BRUNT_FIELD_position);
     if (brunt_total_lagrangian(&j->body->particles)) brunt_body_block_bounds(j->body, b, low, high);
     if (!brunt_broad_phase_in_range(f, j->box, low, high, f->bodies.range)) return BRUNT_OK;
+    int32_t guess = -1; // what the last one met may well be the nearest of the next, too
     for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
         double x[3] = {0};
         for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
         candidate_list found;
-        search_query l = {.box = j->box, .body = j->body->index, .x = x};
+        search_query l = {.box = j->box, .body = j->body->index, .x = x, .particle = true};
         if (!brunt_candidates_bodies(f, &l)) continue;
-        brunt_candidates_find(j->m, f, &l, -1, &found);
+        // Of several bodies the order in which they are found is that of the cell's facets.
+        brunt_candidates_find(j->m, f, &l, l.touches == 1 ? guess : -1, &found);
+        if (found.count) guess = brunt_candidates_front(j->m->surface, found.candidate[0].face);
         for (int32_t q = 0; q < found.count; q++) {
             found.candidate[q].gap -= brunt_extent_along(j->body, s, found.candidate[q].n);
             if (found.candidate[q].gap <= f->bodies.travel &&
