@@ -140,8 +140,9 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
         const bool membrane = membranes && s->membrane.side[other].faces;
         int b = 0;
         while (b < bodies && best[b].body != other) b++;
-        double extent = b < bodies ? best[b].root : f->bodies.range;
+        double extent = b < bodies ? best[b].root : f->bodies.range, known = extent;
         if (guess >= 0 && bound < extent && s->face_body[guess] == other) extent = bound;
+        if (l->particle) known = extent;
         if (!near_box(s->face_box[face], l->x, extent + margin)) continue;
         const double cosine = normal ? -dot(s->face_normal[face], normal) : 1;
         bool faces = !normal || cosine > least || (membrane && -cosine > least);
@@ -150,7 +151,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
         // What is further than two of any direction, and than the nearest of its body, changes neither. Of a particle,
         // which all facets face, the nearest of any direction is no further than that of its body.
         if (face != guess && (!all || l->particle || beyond(s, s->face_box[face], l->x, all->second)) &&
-            (!faces || (b < bodies && beyond(s, s->face_box[face], l->x, best[b].root * best[b].root))))
+            (!faces || (known < f->bodies.range && beyond(s, s->face_box[face], l->x, known * known))))
             continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
