@@ -176,6 +176,7 @@ static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, in
     // The spokes of a quadrilateral are no edges of the surface: on a flat one the nearest point may lie on one.
     double along = dot(best.d, best.normal);
     if (!best.inside && best.square - along * along <= 1e-24 * s->face_area[face]) best.inside = true;
+    best.square = least; // of what is as near one is the nearest: beside a corner that settles which facet is
     return best;
 }
 

@@ -169,6 +169,7 @@ const brunt_contact_row brunt_contact_node_to_facet = {
     .self = BRUNT_SELF_MEMBRANES,
     .knows_membranes = true,
     .planes = true,
+    .near_alone = true,
     .sweeps = 16,
     .membrane_sweeps = 64,
     .cell_factor = 1,

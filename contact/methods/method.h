@@ -37,6 +37,7 @@ typedef struct brunt_contact_row {
     // Of what meets at facets.
     bool knows_membranes;        // it knows the two sides of a membrane
     bool planes;                 // it acts where there are planes alone, too
+    bool near_alone;             // of surfaces it asks for what is near other bodies alone
     bool affine;                 // it acts on every surface, touched or not, and keeps affine velocities of nodes
     int sweeps, membrane_sweeps; // most of a step by default; where there are membranes, 0: the same
     double cell_factor;          // cell of the contact grid by default, in mean edges

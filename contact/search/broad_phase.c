@@ -115,6 +115,33 @@ static bool all_finite(const brunt_node_to_facet *f) {
     return true;
 }
 
+static bool near_boundary(const brunt_contact_context *m, const brunt_node_to_facet *f, int k) {
+    const brunt_contact_surface *s = m->surface;
+    brunt_boundary_walk acting = brunt_boundaries_of(m->acting, s->fem[k]->index);
+    int w;
+    while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE)
+        if (m->boundaries[w].kind->near_surface &&
+            m->boundaries[w].kind->near_surface(s, k, &m->boundaries[w], m->time,
+                                                f->bodies.plane_travel + 1e-6 * s->mean_edge))
+            return true;
+    return false;
+}
+
+// The room about all bodies near body k, twice as wide as is looked: what of k reaches not into it is further than that
+// from all of them. `all`: whatever is of k is in it.
+static void find_zone(brunt_contact_surface *s, const brunt_node_to_facet *f, int k, bool all) {
+    double *zone = s->motion.zone[k];
+    for (int a = 0; a < 3; a++) zone[a] = all ? -INFINITY : INFINITY, zone[3 + a] = -zone[a];
+    const int32_t box = f->bodies.box_of[k];
+    for (int32_t q = f->bodies.first[box]; q < f->bodies.first[box + 1]; q++) {
+        const body_box *other = &f->bodies.box[f->bodies.list[q]];
+        for (int a = 0; a < 3; a++) {
+            zone[a] = fmin(zone[a], other->low[a] - 2 * f->bodies.range);
+            zone[3 + a] = fmax(zone[3 + a], other->high[a] + 2 * f->bodies.range);
+        }
+    }
+}
+
 int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **node_to_facet, bool *far,
                       brunt_error *error) {
     brunt_contact_surface *s = m->surface;
@@ -140,19 +167,16 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **node
         }
     f->bodies.plane_travel = (fastest + frame + boundaries_speed) * m->dt + 0.5 * s->membrane.thickest;
     f->bodies.travel = 2 * fastest * m->dt + spacing + s->membrane.thickest;
-    f->bodies.range = fmax(fmax(RANGE * s->mean_edge + spacing + s->membrane.thickest, f->bodies.travel), m->look);
+    const double least = RANGE * s->mean_edge + spacing + s->membrane.thickest;
+    f->bodies.range = fmax(fmax(least, f->bodies.travel), m->look);
+    s->motion.seen = 2 * least;
     if (find_boxes(m, mpm, mpm_count, f, error)) return BRUNT_FAILED;
     if ((*far = !all_finite(f))) return brunt_fail(error, BRUNT_FAILED, "a body or a plane goes too far in a step");
     if (find_pairs(m, f, error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
-        int32_t box = f->bodies.box_of[k];
-        s->active[k] = f->bodies.first[box + 1] > f->bodies.first[box];
-        int w;
-        brunt_boundary_walk acting = brunt_boundaries_of(m->acting, s->fem[k]->index);
-        while (!s->active[k] && (w = brunt_boundary_next(&acting)) != BRUNT_NONE)
-            s->active[k] = boundaries[w].kind->near_surface &&
-                           boundaries[w].kind->near_surface(s, k, &boundaries[w], m->time,
-                                                            f->bodies.plane_travel + 1e-6 * s->mean_edge);
+        const bool by_boundary = near_boundary(m, f, k);
+        s->active[k] = by_boundary || has_near_bodies(&f->bodies, f->bodies.box_of[k]);
+        find_zone(s, f, k, by_boundary || s->membrane.side);
     }
     return BRUNT_OK;
 }

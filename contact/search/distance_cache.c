@@ -24,7 +24,7 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
     for (int32_t n = 0; n < s->node_count; n++) {
         const int32_t face = c->node_was[n] < 0 ? -1 : f->cache.nearest[c->node_was[n]];
         f->cache.spare[n] = face < 0 ? -1 : c->face_now[face];
-        f->cache.node[n] = (node_distance){.motion = f->cache.motion};
+        f->cache.node[n] = (node_distance){0};
     }
     memcpy(f->cache.nearest, f->cache.spare, (size_t)s->node_count * sizeof *f->cache.nearest);
     f->cells.made = false;
@@ -32,18 +32,17 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
 }
 
 int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) {
-    return 7 * brunt_surface_slots(s) + s->fem_count + 1;
+    return 7 * brunt_surface_slots(s) + s->fem_count;
 }
 
 void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_contact_surface *s, double *out) {
     memset(out, 0, (size_t)brunt_node_to_facet_state_count(s) * sizeof *out);
-    *out++ = f ? f->cache.motion : 0;
     for (int k = 0; k < s->fem_count; k++) *out++ = s->motion.was_active[k];
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             double *to = out + 7 * brunt_surface_slot(s, k, n);
             to[0] = f ? f->cache.nearest[n] : -1;
-            to[1] = f ? f->cache.node[n].distance : 0, to[2] = f ? f->cache.node[n].motion : 0;
+            to[1] = f ? f->cache.node[n].distance : 0, to[2] = f ? f->cache.node[n].since : 0;
             to[3] = f ? f->cache.node[n].second : 0;
             for (int a = 0; a < 3; a++) to[4 + a] = s->x[n][a];
         }
@@ -56,7 +55,6 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_con
     brunt_node_to_facet *f = *node_to_facet;
     if (brunt_distance_cache_fit(f, s->node_count, 0, error)) return BRUNT_FAILED;
     f->cells.made = f->cells.made && !s->renewal.change.any;
-    f->cache.motion = *in++;
     for (int k = 0; k < s->fem_count; k++) s->motion.was_active[k] = *in++ != 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
@@ -69,11 +67,11 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_con
 }
 
 void brunt_distance_cache_validate(const distance_cache *c, int32_t nodes, int32_t faces) {
-    BRUNT_ASSERT(c->motion >= 0 && brunt_array_holds(c->node, c->node_capacity, sizeof *c->node, (size_t)nodes));
+    BRUNT_ASSERT(brunt_array_holds(c->node, c->node_capacity, sizeof *c->node, (size_t)nodes));
     BRUNT_ASSERT(brunt_array_holds(c->nearest, c->nearest_capacity, sizeof *c->nearest, (size_t)nodes));
     for (int32_t n = 0; n < nodes; n++) {
         BRUNT_ASSERT(c->nearest[n] >= -1 && c->nearest[n] < faces);
-        BRUNT_ASSERT(c->node[n].motion >= 0 && c->node[n].motion <= c->motion);
+        BRUNT_ASSERT(c->node[n].since >= 0);
         BRUNT_ASSERT(!isnan(c->node[n].distance) && !isnan(c->node[n].second));
     }
 }

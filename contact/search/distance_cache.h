@@ -4,20 +4,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// How far from everything a node was when it was looked at, and how far things had moved then: until they have moved
-// that far again, it touches nothing and need not be looked at (Verlet).
+// How far from everything a node was when it was looked at, and how far it and what is near it have moved
+// against each other since: until that is as far, it touches nothing and need not be looked at (Verlet).
 typedef struct node_distance {
-    double distance, motion;
+    double distance, since;
     double second; // of the nearest facet but `nearest`: until then that one stays the nearest
 } node_distance;
 
 typedef struct distance_cache {
-    double motion;       // [m] twice the furthest motion of each step, summed
     node_distance *node; // of each
     int32_t *nearest;    // of each: the face it was nearest to, to look at first; -1
     int32_t *spare;      // while they are put in a new order
     size_t node_capacity, nearest_capacity, spare_capacity;
 } distance_cache;
 
-// Aborts where what is remembered of `nodes` nodes names faces that there are not, or a way that nothing has gone.
+// Aborts where what is remembered of `nodes` nodes names faces that there are not, or a way below 0.
 void brunt_distance_cache_validate(const distance_cache *cache, int32_t nodes, int32_t faces);

@@ -84,8 +84,13 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
     const double *normal = s->normal[n];
     bool faces = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
     node_distance *cached = &f->cache.node[n];
-    const double since = f->cache.motion - cached->motion;
+    const double since = cached->since += s->motion.apart[brunt_surface_chunk(s, k, n) / s->motion.group],
+                 far = fmin(f->bodies.range, s->motion.seen);
     if (cached->distance - since > f->bodies.travel) return;
+    if (!s->motion.near[n]) {
+        *cached = (node_distance){.distance = far};
+        return;
+    }
     if (s->membrane.front && s->membrane.front[n] != n && s->face_first[n + 1] == s->face_first[n])
         return; // a detached nodes has one side
     if (!(since < cached->second &&
@@ -93,13 +98,13 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         search_query l = {
             .box = f->bodies.box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
         if (s->membrane.side) look_at_membranes(s, n, &l);
-        cached->motion = f->cache.motion, cached->distance = f->bodies.range, cached->second = 0;
+        cached->since = 0, cached->distance = far, cached->second = 0;
         if (!brunt_candidates_bodies(f, &l)) {
             if (l.touches) cached->distance = 0; // near, but outside the cells
             return;
         }
         brunt_candidates_find(m, f, &l, f->cache.nearest[n], found);
-        cached->distance = found->distance, cached->second = found->second;
+        cached->distance = fmin(found->distance, far), cached->second = fmin(found->second, far);
         if (l.touches == BRUNT_MAX_NEAR)
             cached->distance = cached->second = 0; // there may be more bodies than were looked at
         if (found->count) f->cache.nearest[n] = found->candidate[0].face;
@@ -129,8 +134,11 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
     for (int32_t n = (int32_t)begin; n < end; n++) {
         while (s->node_range[k + 1] <= n) k++;
         j->f->nodes.count[n] = 0;
-        if (s->active[k] && f->bodies.first[f->bodies.box_of[k] + 1] > f->bodies.first[f->bodies.box_of[k]])
+        if (!s->active[k]) continue;
+        if (has_near_bodies(&f->bodies, f->bodies.box_of[k]))
             find_node_candidates(j, k, n, worker);
+        else
+            f->cache.node[n] = (node_distance){0}; // how far it goes meanwhile is not counted
     }
 }
 
@@ -321,11 +329,8 @@ static int search_from_nodes(search_job *j, brunt_error *error) {
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
                              brunt_constraint_set *constraints, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
-    f->cache.motion += 2 * s->motion.furthest;
-    if (!(f->cache.motion < 1e300)) { // a body is new: nothing is known of distances
-        f->cache.motion = 0;
-        for (int32_t n = 0; f->cache.node && n < s->node_count; n++) f->cache.node[n] = (node_distance){0};
-    }
+    for (int32_t n = 0; s->motion.anew && f->cache.node && n < s->node_count; n++)
+        f->cache.node[n] = (node_distance){0}; // a body is new: nothing is known of distances
     if (!f->bodies.pair_count) return BRUNT_OK;
     if (brunt_facet_cells_make(m, f, error)) return BRUNT_FAILED;
     search_job j = {.m = m, .f = f, .constraints = constraints};

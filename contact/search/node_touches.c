@@ -22,7 +22,7 @@ void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *s, 
     const node_distance *cached = &f->cache.node[n];
     brunt_touch_energy *of = f->touches.of[n];
     of[TOUCHED_PLANE].held = 0;
-    if (!s->active[k] || cached->distance - (f->cache.motion - cached->motion) > FAR * s->mean_edge)
+    if (!s->active[k] || cached->distance - cached->since > FAR * s->mean_edge)
         of[TOUCHED_FACET].held = of[TOUCHED_EDGE].held = 0;
 }
 

@@ -28,10 +28,10 @@ static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces,
 // clang-format off
 #define BODY_ARRAYS(X) \
     X(fem) X(node_range) X(face_range) X(low) X(high) X(active) X(node_end) X(face_end) X(motion.mean) X(motion.speed) \
-    X(motion.was_active) X(motion.kept) X(motion.travel)
+    X(motion.was_active) X(motion.kept) X(motion.travel) X(motion.zone)
 #define NODE_ARRAYS(X) \
     X(x, 1) X(v, 1) X(old, 1) X(mass, 1) X(inverse, 1) X(normal, 1) X(area, 1) X(face_first, 1) X(output.gap, 1) \
-    X(output.impulse, 1) X(output.state, 1) X(affine, s->affine) X(membrane.front, s->membrane.front)
+    X(output.impulse, 1) X(output.state, 1) X(motion.near, 1) X(motion.was, 1) X(affine, s->affine) X(membrane.front, s->membrane.front)
 #define FACE_ARRAYS(X) X(face_normal) X(face_centre) X(face_area) X(face_box) X(face_body)
 // clang-format on
 
@@ -51,8 +51,10 @@ int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t 
     const size_t nodes = (size_t)node_count + 2, faces = (size_t)face_count + 1;
     if (nodes > s->node_array_capacity) {
         const size_t room = s->node_array_capacity ? nodes + nodes / 2 : nodes, had = s->node_array_capacity;
-        const size_t pieces = room / BRUNT_SURFACE_PIECE + (size_t)s->fem_count + 1;
-        int failed = enlarge(&s->motion.chunk, 0, (room / GRAIN + 1) * sizeof *s->motion.chunk, error) ||
+        const size_t pieces = room / BRUNT_SURFACE_PIECE + (size_t)s->fem_count + 1,
+                     chunks = room / GRAIN + (size_t)s->fem_count + 1;
+        int failed = enlarge(&s->motion.chunk, 0, chunks * sizeof *s->motion.chunk, error) ||
+                     enlarge(&s->motion.apart, 0, chunks * sizeof *s->motion.apart, error) ||
                      enlarge(&s->motion.piece, 0, pieces * sizeof *s->motion.piece, error);
 #define ENLARGE(what, when)                                                                                            \
     if (!failed && (when)) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what, error);
@@ -63,7 +65,8 @@ int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t 
     }
     if (faces > s->face_array_capacity) {
         const size_t room = s->face_array_capacity ? faces + faces / 2 : faces, had = s->face_array_capacity;
-        int failed = enlarge(&s->face_of, 0, 4 * room * sizeof *s->face_of, error);
+        int failed = enlarge(&s->face_of, 0, 4 * room * sizeof *s->face_of, error) ||
+                     enlarge(&s->motion.widest, 0, (room / GRAIN + 1) * sizeof *s->motion.widest, error);
 #define ENLARGE(what)                                                                                                  \
     if (!failed) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what, error);
         FACE_ARRAYS(ENLARGE)
@@ -172,6 +175,7 @@ int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count
         brunt_surface_relate(s, error) || add_topologies(s, error))
         return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) s->output.gap[n] = INFINITY;
+    brunt_surface_all_near(s);
     int32_t edges = 0;
     double sum = edge_sum(s, &edges);
     s->mean_edge = edges ? sum / edges : 0;
@@ -182,8 +186,10 @@ int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count
 
 size_t brunt_surface_bytes(const brunt_contact_surface *s) {
     const size_t nodes = s->node_array_capacity, faces = s->face_array_capacity;
-    size_t of_body = sizeof *s->motion.piece, of_face = 4 * sizeof *s->face_of,
-           of_node = sizeof *s->motion.chunk / GRAIN + sizeof *s->motion.piece / BRUNT_SURFACE_PIECE;
+    size_t of_body = sizeof *s->motion.piece + sizeof *s->motion.chunk + sizeof *s->motion.apart,
+           of_face = 4 * sizeof *s->face_of + sizeof *s->motion.widest / GRAIN,
+           of_node = (sizeof *s->motion.chunk + sizeof *s->motion.apart) / GRAIN +
+                     sizeof *s->motion.piece / BRUNT_SURFACE_PIECE;
 #define ADD(what) of_body += sizeof *s->what;
     BODY_ARRAYS(ADD)
 #undef ADD
@@ -226,7 +232,12 @@ void brunt_surface_free(brunt_contact_surface *s) {
                      s->motion.was_active,
                      s->motion.kept,
                      s->motion.travel,
+                     s->motion.zone,
+                     s->motion.near,
+                     s->motion.was,
                      s->motion.chunk,
+                     s->motion.apart,
+                     s->motion.widest,
                      s->motion.piece,
                      s->motion.mean,
                      s->motion.speed,
@@ -250,6 +261,11 @@ void brunt_surface_free(brunt_contact_surface *s) {
     brunt_free(s->renewal.topology);
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *s = (brunt_contact_surface){0};
+}
+
+void brunt_surface_all_near(brunt_contact_surface *s) {
+    for (int k = 0; k < s->fem_count; k++)
+        for (int a = 0; a < 6; a++) s->motion.zone[k][a] = a < 3 ? -INFINITY : INFINITY;
 }
 
 void brunt_surface_meshes(const brunt_contact_surface *s, int body, int *first, int *end) {

@@ -59,13 +59,23 @@ typedef struct brunt_surface_motion {
     double frame[3];           // [m/s] mean velocity of all surfaces, a step ago
     double frame_step[3];      // [m] how far it went in the last step
     double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
-    double furthest; // [m] any node has moved against it since it was gathered last; INFINITY when bodies became active
+    double seen;               // [m] how far nodes look for facets, and remember what they saw
+    double *apart;     // [m] of each group of chunks: the most that one of their nodes has moved against what is near
+                       // of it since they were gathered last ...
+    int32_t group;     // ... which is so many chunks
+    bool anew;         // bodies became active: where they were before is not known
+    double (*zone)[6]; // [m] low, high of the room about all that is near each active body. All there is unless told
+    uint8_t *near;     // of each node of active bodies: a face of it reaches into that room, or it has none
+    double (*was)[3];  // [m] of each: where it was when it was gathered last
     bool *was_active;
     // While nothing is near: bounds of each body (low, high [m]) as they were looked at last, and how far any of its
     // nodes may have come since [m].
     double (*kept)[6], *travel;
-    bool rests;    // `kept` is there
-    double *chunk; // [m^2] the same of each chunk of nodes, squared
+    bool rests; // `kept` is there
+    struct brunt_surface_way {
+        double low[3], high[3], from[3], to[3]; // [m] of the ways of nodes that are near, and of their places
+    } * chunk;                                  // of each chunk of nodes
+    double *widest;                             // [m] of each chunk of faces, of those that are near
     // Bounds of the pieces of bodies that threads look at, BRUNT_SURFACE_PIECE nodes each. Piece p of body k is number
     // node_range[k] / BRUNT_SURFACE_PIECE + k + p: room for all, and no table needed.
     struct brunt_surface_piece {
@@ -88,8 +98,8 @@ typedef struct brunt_contact_surface {
     int32_t *node_range, *face_range; // ... nodes node_range[k] .. node_range[k + 1], faces likewise
     int32_t *node_end, *face_end;     // of each body: end of what counts once; of a membrane, of its front
     double (*low)[3], (*high)[3];     // [m] bounds of each body's surface
-    bool *active;                     // of each body: something is near it; x, v, normals are only made for these
-    // Nodes.
+    bool *active;                     // of each body: something is near it; x and faces are only made for these
+    // Nodes. Of active bodies those that are near (motion.near) have all of this, others their place alone.
     int32_t node_count;
     int32_t *body, *node; // of each node: index of its body (brunt_fem_body.index), node number there
     double (*x)[3];       // [m] at the start of the step
@@ -149,12 +159,21 @@ void brunt_surface_bounds(brunt_contact_surface *surface, int threads, brunt_tim
 void brunt_surface_rest(brunt_contact_surface *surface, bool anew, int threads, brunt_timer *timer);
 // After it: the bodies move for `dt` with the velocities that they have.
 void brunt_surface_rest_moves(brunt_contact_surface *surface, double dt);
-// Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
-// kick.
+// All nodes of active bodies are near something.
+void brunt_surface_all_near(brunt_contact_surface *surface);
+// Places and faces of the active bodies, and of their nodes that are near something velocities, masses and normals.
+// `gravity` [m/s^2] and `dt` are those of this step's kick.
 void brunt_surface_gather_state(brunt_contact_surface *surface, double dt, const double gravity[3], int threads,
                                 brunt_timer *timer);
-// Velocities of the active bodies back to them, which then move for `dt`.
+// Velocities of nodes of the active bodies that are near something back to them, which then move for `dt`.
 void brunt_surface_scatter_velocity(brunt_contact_surface *surface, double dt, int threads, brunt_timer *timer);
+
+// Nodes are gathered, and their motion is bounded, by chunks of one body each: the number of that of node n of body k.
+enum { BRUNT_SURFACE_GRAIN = 256 };
+static inline int32_t brunt_surface_chunk(const brunt_contact_surface *surface, int k, int32_t n) {
+    const int32_t first = surface->node_range[k];
+    return first / BRUNT_SURFACE_GRAIN + k + (n - first) / BRUNT_SURFACE_GRAIN;
+}
 
 // How many nodes a face has.
 static inline int brunt_face_corners(const int32_t face[4]) { return face[2] < 0 ? 2 : face[3] < 0 ? 3 : 4; }

@@ -20,20 +20,32 @@ typedef struct job {
 
 static int32_t first_piece(const brunt_contact_surface *s, int k) { return s->node_range[k] / PIECE + k; }
 
-// The last body whose pieces begin at `piece` or before.
-static int body_of_piece(const brunt_contact_surface *s, int32_t piece) {
+// The last body whose pieces, of so many nodes, begin at `piece` or before.
+static int body_of_piece(const brunt_contact_surface *s, int32_t size, int32_t piece) {
     int low = 0, high = s->fem_count;
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
-        *(first_piece(s, middle) <= piece ? &low : &high) = middle;
+        *(s->node_range[middle] / size + middle <= piece ? &low : &high) = middle;
     }
     return low;
 }
 
+// The place of a node. What was told of it, if it was near something, is taken back.
+static inline void take_place(brunt_contact_surface *s, int32_t n, const real *at) {
+    for (int a = 0; a < 3; a++) s->motion.was[n][a] = s->x[n][a], s->x[n][a] = (double)at[a];
+    if (s->motion.near[n]) {
+        for (int a = 0; a < 3; a++) s->output.impulse[n][a] = 0;
+        s->output.gap[n] = INFINITY;
+        s->output.state[n] = 0;
+    }
+    s->motion.near[n] = s->face_first[n + 1] == s->face_first[n];
+}
+
+// Bounds of pieces; and the places of what was active a step ago, which most often still is.
 static void bound_pieces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_contact_surface *s = ((const job *)context)->surface;
-    int k = body_of_piece(s, (int32_t)begin);
+    int k = body_of_piece(s, PIECE, (int32_t)begin);
     for (int64_t p = begin; p < end; p++) {
         while (k + 1 < s->fem_count && first_piece(s, k + 1) <= p) k++;
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -49,6 +61,7 @@ static void bound_pieces(void *context, int64_t begin, int64_t end, int worker) 
                 square += own * own;
             }
             fastest = square > fastest ? square : fastest;
+            if (s->motion.was_active[k]) take_place(s, n, at);
         }
         struct brunt_surface_piece *piece = &s->motion.piece[p];
         memcpy(piece->low, low, sizeof low), memcpy(piece->high, high, sizeof high);
@@ -132,49 +145,34 @@ static int32_t next_active(const brunt_contact_surface *s, const int32_t *range,
     return item;
 }
 
-static void gather_nodes(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    const job *j = context;
-    brunt_contact_surface *s = j->surface;
-    int k = 0;
-    double furthest = 0;
-    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
-        const brunt_fem_body *fem = s->fem[k];
-        const int32_t node = s->node[n];
-        const real *at = brunt_fem_node(fem, node);
-        real force[3];
-        brunt_fem_internal_force(fem, node, force);
-        double inverse = 1 / (double)at[BRUNT_FEM_MASS], moved = 0;
-        s->mass[n] = fem->damping_mass * (double)at[BRUNT_FEM_MASS]; // drag takes its share of impulses
-        for (int a = 0; a < 3; a++) {
-            bool held = (fem->held && fem->held[node] >> a & 1) || a >= s->dim;
-            double load = (double)force[a] + (fem->load ? (double)fem->load[4 * (size_t)node + (size_t)a] : 0);
-            double step = (double)at[a] - s->x[n][a] - s->motion.frame_step[a];
-            moved += step * step;
-            s->x[n][a] = (double)at[a];
-            s->v[n][a] = (double)at[BRUNT_FEM_V + a];
-            s->old[n][a] = held ? s->v[n][a] : s->v[n][a] - j->dt * (load * inverse + j->gravity[a]);
-            s->inverse[n][a] = held ? 0 : inverse / fem->damping_mass;
-            s->output.impulse[n][a] = 0;
-        }
-        s->output.gap[n] = INFINITY;
-        s->output.state[n] = 0;
-        furthest = moved > furthest ? moved : furthest;
-    }
-    s->motion.chunk[begin / GRAIN] = furthest;
-}
-
-static void gather_chunks(void *context, int64_t begin, int64_t end, int worker) {
-    const int32_t count = ((const job *)context)->surface->node_count;
-    for (int64_t c = begin; c < end; c++)
-        gather_nodes(context, c * GRAIN, (c + 1) * GRAIN < count ? (c + 1) * GRAIN : count, worker);
-}
-
-static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
+// Those that bounds did not ask for: of bodies that become active, and of the backs of membranes.
+static void gather_places(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_contact_surface *s = ((const job *)context)->surface;
     int k = 0;
-    for (int32_t f = (int32_t)begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++)
+        if (!s->motion.was_active[k] || n >= s->node_end[k]) take_place(s, n, brunt_fem_node(s->fem[k], s->node[n]));
+}
+
+// Marks the nodes of a face that reaches into the room about what is near its body; several threads may. How wide it
+// is, if it does.
+static inline double mark_near(const brunt_contact_surface *s, int32_t f, const double zone[6]) {
+    const double *box = s->face_box[f];
+    double widest = 0;
+    for (int a = 0; a < 3; a++) {
+        if (box[a] > zone[3 + a] || box[3 + a] < zone[a]) return 0;
+        widest = box[3 + a] - box[a] > widest ? box[3 + a] - box[a] : widest;
+    }
+    for (int c = 0; c < brunt_face_corners(s->face[f]); c++)
+        __atomic_store_n(&s->motion.near[s->face[f][c]], 1, __ATOMIC_RELAXED);
+    return widest;
+}
+
+// The widest of those that are near something [m].
+static double make_faces(brunt_contact_surface *s, int32_t begin, int32_t end) {
+    int k = 0;
+    double widest = 0;
+    for (int32_t f = begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
         const int32_t *node = s->face[f];
         const int n = brunt_face_corners(node);
         double normal[3] = {0}, size = 0;
@@ -204,45 +202,92 @@ static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
             s->face_box[f][a] = low, s->face_box[f][3 + a] = high;
         }
         for (int a = 0; a < 3; a++) s->face_normal[f][a] = size > 0 ? normal[a] / size : 0;
+        const double wide = mark_near(s, f, s->motion.zone[k]);
+        widest = wide > widest ? wide : widest;
+    }
+    return widest;
+}
+
+static void make_face_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_surface *s = ((const job *)context)->surface;
+    for (int64_t c = begin; c < end; c++)
+        s->motion.widest[c] = make_faces(s, (int32_t)c * GRAIN,
+                                         (int32_t)((c + 1) * GRAIN < s->face_count ? (c + 1) * GRAIN : s->face_count));
+}
+
+static void make_normal(brunt_contact_surface *s, int k, int32_t n) {
+    double sum[3] = {0}, area = 0, whole = 0, size = 0;
+    for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
+        int32_t f = s->face_of[q];
+        double share = s->face_area[f] / brunt_face_corners(s->face[f]);
+        area += share;
+        whole += brunt_surface_nodal_area(s, f, n);
+        for (int a = 0; a < 3; a++) sum[a] += share * s->face_normal[f][a];
+    }
+    if (s->axisymmetric && s->x[n][0] == 0) sum[0] = 0; // the other side of the axis
+    for (int a = 0; a < 3; a++) size += sum[a] * sum[a];
+    size = sqrt(size);
+    s->area[n] = whole;
+    const bool eroded = s->renewal.eroded && s->renewal.eroded[s->body[n]] && !s->fem[k]->traits->membrane;
+    for (int a = 0; a < 3; a++) s->normal[n][a] = size > (eroded ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
+}
+
+// Of the nodes that are near something: velocities, masses and normals, and how far they have gone.
+static void gather_near(const job *j, int k, int32_t begin, int32_t end, struct brunt_surface_way *way) {
+    brunt_contact_surface *s = j->surface;
+    const brunt_fem_body *fem = s->fem[k];
+    for (int32_t n = begin; n < end; n++) {
+        if (!s->motion.near[n]) continue;
+        const int32_t node = s->node[n];
+        const real *at = brunt_fem_node(fem, node);
+        real force[3];
+        brunt_fem_internal_force(fem, node, force);
+        double inverse = 1 / (double)at[BRUNT_FEM_MASS];
+        s->mass[n] = fem->damping_mass * (double)at[BRUNT_FEM_MASS]; // drag takes its share of impulses
+        for (int a = 0; a < 3; a++) {
+            bool held = (fem->held && fem->held[node] >> a & 1) || a >= s->dim;
+            double load = (double)force[a] + (fem->load ? (double)fem->load[4 * (size_t)node + (size_t)a] : 0);
+            const double x = s->x[n][a], step = x - s->motion.was[n][a];
+            way->low[a] = step < way->low[a] ? step : way->low[a];
+            way->high[a] = step > way->high[a] ? step : way->high[a];
+            way->from[a] = x < way->from[a] ? x : way->from[a], way->to[a] = x > way->to[a] ? x : way->to[a];
+            s->v[n][a] = (double)at[BRUNT_FEM_V + a];
+            s->old[n][a] = held ? s->v[n][a] : s->v[n][a] - j->dt * (load * inverse + j->gravity[a]);
+            s->inverse[n][a] = held ? 0 : inverse / fem->damping_mass;
+        }
+        make_normal(s, k, n);
     }
 }
 
-static void make_normals(void *context, int64_t begin, int64_t end, int worker) {
+static void gather_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_surface *s = ((const job *)context)->surface;
-    int k = 0;
-    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
-        double sum[3] = {0}, area = 0, whole = 0, size = 0;
-        for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
-            int32_t f = s->face_of[q];
-            double share = s->face_area[f] / brunt_face_corners(s->face[f]);
-            area += share;
-            whole += brunt_surface_nodal_area(s, f, n);
-            for (int a = 0; a < 3; a++) sum[a] += share * s->face_normal[f][a];
-        }
-        if (s->axisymmetric && s->x[n][0] == 0) sum[0] = 0; // the other side of the axis
-        for (int a = 0; a < 3; a++) size += sum[a] * sum[a];
-        size = sqrt(size);
-        s->area[n] = whole;
-        const bool eroded = s->renewal.eroded && s->renewal.eroded[s->body[n]] && !s->fem[k]->traits->membrane;
-        for (int a = 0; a < 3; a++) s->normal[n][a] = size > (eroded ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
+    const job *j = context;
+    const brunt_contact_surface *s = j->surface;
+    for (int64_t c = begin; c < end; c++) {
+        const int k = body_of_piece(s, GRAIN, (int32_t)c);
+        const int32_t first = s->node_range[k] + ((int32_t)c - brunt_surface_chunk(s, k, s->node_range[k])) * GRAIN,
+                      last = first + GRAIN < s->node_range[k + 1] ? first + GRAIN : s->node_range[k + 1];
+        struct brunt_surface_way way = brunt_surface_no_way();
+        if (s->active[k]) gather_near(j, k, first, last, &way);
+        s->motion.chunk[c] = way;
     }
 }
 
 void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const double gravity[3], int threads,
                                 brunt_timer *timer) {
     job j = {s, dt, gravity};
-    brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, gather_chunks, &j, timer);
-    s->motion.furthest = 0;
-    for (int32_t c = 0; c < (s->node_count + GRAIN - 1) / GRAIN; c++)
-        s->motion.furthest = fmax(s->motion.furthest, s->motion.chunk[c]);
-    s->motion.furthest = sqrt(s->motion.furthest);
+    bool more = s->membrane.front;
+    for (int k = 0; k < s->fem_count; k++) more = more || (s->active[k] && !s->motion.was_active[k]);
+    if (more) brunt_parallel(threads, s->node_count, GRAIN, gather_places, &j, timer);
+    brunt_parallel(threads, (s->face_count + GRAIN - 1) / GRAIN, 1, make_face_chunks, &j, timer);
+    if (s->fem_count) brunt_parallel(threads, brunt_surface_chunks(s), 1, gather_chunks, &j, timer);
+    brunt_surface_compare_ways(s, threads, timer);
+    s->motion.anew = false;
     for (int k = 0; k < s->fem_count; k++) {
-        if (s->active[k] && !s->motion.was_active[k]) s->motion.furthest = INFINITY; // where it was before is not known
+        s->motion.anew = s->motion.anew || (s->active[k] && !s->motion.was_active[k]);
         s->motion.was_active[k] = s->active[k];
     }
-    brunt_parallel(threads, s->face_count, GRAIN, make_faces, &j, timer);
-    brunt_parallel(threads, s->node_count, GRAIN, make_normals, &j, timer);
 }
 
 static void scatter_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -250,7 +295,7 @@ static void scatter_nodes(void *context, int64_t begin, int64_t end, int worker)
     const brunt_contact_surface *s = ((const job *)context)->surface;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
-        if (n >= s->node_end[k]) continue;
+        if (n >= s->node_end[k] || !s->motion.near[n]) continue;
         real *at = brunt_fem_node(s->fem[k], s->node[n]);
         for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
     }

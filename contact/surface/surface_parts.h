@@ -3,7 +3,7 @@
 
 #include "contact/surface/contact_surface.h"
 
-enum { BRUNT_SURFACE_GRAIN = 256, BRUNT_SURFACE_PIECE = 1024 };
+enum { BRUNT_SURFACE_PIECE = 1024 };
 
 // --- contact_surface.c
 // Room for so many nodes and faces, with what is there kept: exactly that at the start, later half as much again, so
@@ -11,6 +11,12 @@ enum { BRUNT_SURFACE_GRAIN = 256, BRUNT_SURFACE_PIECE = 1024 };
 int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count, brunt_error *error);
 // Owners of nodes and faces, and what follows from the lists of them. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_surface_relate(brunt_contact_surface *s, brunt_error *error);
+
+// --- surface_ways.c
+struct brunt_surface_way brunt_surface_no_way(void);
+int32_t brunt_surface_chunks(const brunt_contact_surface *s); // how many there may be
+// How far the nodes of each group have moved against what is near them, from what chunks of nodes have.
+void brunt_surface_compare_ways(brunt_contact_surface *s, int threads, brunt_timer *timer);
 
 // --- membrane_sides.c
 // The other side of a membrane: `nodes` nodes and `faces` faces once more, behind them, facing the other way.

@@ -78,7 +78,8 @@ static int keep_nodes(brunt_contact_surface *s, brunt_error *error) {
     if (reorder(s, s->x, sizeof *s->x, error) || reorder(s, s->affine, sizeof *s->affine, error) ||
         reorder(s, s->output.gap, sizeof *s->output.gap, error) ||
         reorder(s, s->output.impulse, sizeof *s->output.impulse, error) ||
-        reorder(s, s->output.state, sizeof *s->output.state, error) || reorder(s, s->area, sizeof *s->area, error) ||
+        reorder(s, s->output.state, sizeof *s->output.state, error) ||
+        reorder(s, s->motion.near, sizeof *s->motion.near, error) || reorder(s, s->area, sizeof *s->area, error) ||
         reorder(s, s->mass, sizeof *s->mass, error))
         return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++)

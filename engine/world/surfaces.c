@@ -291,6 +291,8 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     const int count = brunt_contact_row_count;
     for (int r = 0; !failed && r < count; r++)
         if (rows[r]->near && is_used(contact, r)) rows[r]->near(&m);
+    for (int r = 0; r < count; r++)
+        if (!rows[r]->near_alone && is_used(contact, r)) brunt_surface_all_near(&contact->surface);
     if (!failed) brunt_surface_gather_state(&contact->surface, kick, gravity, world->settings.threads, timer);
     for (int r = 0; !failed && r < count; r++) {
         if (!is_used(contact, r)) continue;

@@ -72,7 +72,7 @@ static void contact_frame(brunt_world *w) { w->contact.frame[0] = NAN; }
 static void cache_face(brunt_world *w) { w->contact.node_to_facet->cache.nearest[0] = w->contact.surface.face_count; }
 static void cache_motion(brunt_world *w) {
     distance_cache *cache = &w->contact.node_to_facet->cache;
-    cache->node[1].motion = 2 * cache->motion + 1;
+    cache->node[1].since = -1;
 }
 static void cell_face(brunt_world *w) { w->contact.node_to_facet->cells.face[0] = -1; }
 static void cell_order(brunt_world *w) { w->contact.node_to_facet->cells.first[1] = -1; }
