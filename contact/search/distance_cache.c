@@ -32,17 +32,18 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
 }
 
 int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) {
-    return 7 * brunt_surface_slots(s) + s->fem_count;
+    return 7 * brunt_surface_slots(s) + s->fem_count + 1;
 }
 
 void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_contact_surface *s, double *out) {
     memset(out, 0, (size_t)brunt_node_to_facet_state_count(s) * sizeof *out);
+    out++; // as once was saved: how far everything had moved, and of each node how far when it was looked at
     for (int k = 0; k < s->fem_count; k++) *out++ = s->motion.was_active[k];
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             double *to = out + 7 * brunt_surface_slot(s, k, n);
             to[0] = f ? f->cache.nearest[n] : -1;
-            to[1] = f ? f->cache.node[n].distance : 0, to[2] = f ? f->cache.node[n].since : 0;
+            to[1] = f ? f->cache.node[n].distance : 0, to[2] = f ? -f->cache.node[n].since : 0;
             to[3] = f ? f->cache.node[n].second : 0;
             for (int a = 0; a < 3; a++) to[4 + a] = s->x[n][a];
         }
@@ -55,12 +56,13 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_con
     brunt_node_to_facet *f = *node_to_facet;
     if (brunt_distance_cache_fit(f, s->node_count, 0, error)) return BRUNT_FAILED;
     f->cells.made = f->cells.made && !s->renewal.change.any;
+    const double moved = *in++;
     for (int k = 0; k < s->fem_count; k++) s->motion.was_active[k] = *in++ != 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             const double *from = in + 7 * brunt_surface_slot(s, k, n);
             f->cache.nearest[n] = (int32_t)from[0];
-            f->cache.node[n] = (node_distance){from[1], from[2], from[3]};
+            f->cache.node[n] = (node_distance){from[1], moved - from[2], from[3]};
             for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
         }
     return BRUNT_OK;
