@@ -141,6 +141,27 @@ static int free_way(const struct brunt_implicit *m, double *way, brunt_error *er
     return way_left(m) == 0 ? BRUNT_OK : free_part(m, way, error);
 }
 
+// Towards field.gradient, of which `part` can be gone at once, as near as nothing is lost inside of another: what
+// slides far along a surface is looked for anew on its way.
+static int go_in_parts(struct brunt_implicit *m, double part, brunt_error *error) {
+    enum { PARTS = 16 };
+    const brunt_fields *f = &m->field;
+    const brunt_term *contact = &m->term[m->body_terms];
+    const int64_t count = brunt_implicit_components(m);
+    for (int i = 0; i < PARTS; i++) {
+        memcpy(f->pull, f->u, (size_t)count * sizeof *f->u);
+        for (int64_t k = 0; k < count; k++) f->u[k] += part * f->step[k];
+        if (!isfinite(contact->ops->energy(contact->self, &m->team, f->u).value)) {
+            memcpy(f->u, f->pull, (size_t)count * sizeof *f->u);
+            break;
+        }
+        if (part == 1) break;
+        for (int64_t k = 0; k < count; k++) f->step[k] = f->gradient[k] - f->u[k];
+        if (free_part(m, &part, error)) return BRUNT_FAILED;
+    }
+    return BRUNT_OK;
+}
+
 // Begins where held components are at their places and all others where the matrix at the start takes them, if that can
 // be gone to: what is drawn or turned by its end follows, instead of being torn first. In the first load step with what
 // touches joined: nothing presses yet that would hold it.
@@ -157,12 +178,13 @@ static int lead(struct brunt_implicit *m, bool joined, brunt_error *error) {
     if (joined) brunt_barrier_join(m->contact.barrier, false);
     m->tried.factorisations += way.factorisations;
     if (status) return BRUNT_OK;
-    memcpy(f->step, f->gradient, (size_t)brunt_implicit_components(m) * sizeof *f->step);
     double part;
+    memcpy(f->step, f->gradient, (size_t)brunt_implicit_components(m) * sizeof *f->step);
     if (free_part(m, &part, error)) return BRUNT_FAILED;
     if (drawn && part < 1) return BRUNT_OK; // held components go all the way
+    if (!drawn) return go_in_parts(m, part, error);
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
-        f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : part * f->step[k];
+        f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : f->step[k];
     return BRUNT_OK;
 }
 
