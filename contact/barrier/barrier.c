@@ -32,7 +32,7 @@ void brunt_barrier_free(brunt_barrier *b) {
     }
     brunt_free(b->workspace), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
     brunt_free(b->felt), brunt_free(b->felt_before), brunt_free(b->here);
-    brunt_free(b->kept);
+    brunt_free(b->kept), brunt_free(b->kept_edges);
     sets_free(&b->sets), sets_free(&b->lagged_sets);
     brunt_colours_free(&b->colours), brunt_colours_free(&b->lagged_colours);
     brunt_free(b);

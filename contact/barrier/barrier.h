@@ -139,10 +139,12 @@ void brunt_barrier_associate(brunt_barrier *barrier, const double *from);
 int brunt_barrier_keep_slips(brunt_barrier *barrier, brunt_error *error);
 // The step has ended at u: takes what is kept of it, and friction as it is there.
 int brunt_barrier_keep(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
-// That as numbers, for checkpoints.
+// That as numbers, for checkpoints: how many there are now, which steps change in three dimensions, and whether so many
+// may be set. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int64_t brunt_barrier_kept_count(const brunt_barrier *barrier); // of NULL 0
+bool brunt_barrier_kept_fits(const brunt_barrier *barrier, int64_t count);
 void brunt_barrier_kept_get(const brunt_barrier *barrier, double *out);
-void brunt_barrier_kept_set(brunt_barrier *barrier, const double *in);
+int brunt_barrier_kept_set(brunt_barrier *barrier, const double *in, int64_t count, brunt_error *error);
 // [m] of all that is in contact where the barrier was last looked at; INFINITY: nothing is.
 double brunt_barrier_least_gap(const brunt_barrier *barrier);
 bool brunt_barrier_has_friction(const brunt_barrier *barrier); // some pair or plane has

@@ -51,9 +51,14 @@ double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c) {
     return -weighted(b, c, &v) * v.db;
 }
 
-double barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c) {
+void barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c, double *slope) {
     brunt_barrier_value v;
-    return -weighted(b, c, &v) * v.ddb;
+    const double weight = weighted(b, c, &v);
+    for (int i = 0; i < c->at.places; i++)
+        for (int k = 0; k < b->dim; k++) slope[i * b->dim + k] = -weight * v.ddb * c->at.w[i] * c->at.n[k];
+    if (c->threshold == 0) return;
+    const mollifier m = mollifier_of(c);
+    for (int i = 0; i < 12; i++) slope[i] -= c->weight * v.db * m.dm * m.gradient[i];
 }
 
 bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step) {

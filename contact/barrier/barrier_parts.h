@@ -40,6 +40,7 @@ typedef struct barrier_contact {
 // greatest force that friction takes, as an unknown of its own (barrier_slip.c).
 typedef struct barrier_rub {
     double kept[3]; // [m] that the surfaces had given before the step
+    double turned;  // [m] of it along the normal, before it was turned along the surfaces
     double share;   // of the step's slip that counts: load steps, what came before they met does not
     double slip[3]; // [m] dt times its velocity, and that
     double part[3]; // at most of length 1
@@ -58,8 +59,15 @@ typedef struct barrier_felt {
 enum { BARRIER_KEPT = 3 };
 typedef struct barrier_kept {
     int32_t other;
+    bool by_edges;         // it touches nothing there itself, but edges that end at it do; until the next step
     double force, slip[3]; // [N], [m]
 } barrier_kept;
+
+// What two edges that cross keep: places of the contact, and how far they have given.
+typedef struct barrier_kept_edges {
+    int32_t place[4];
+    double slip[3]; // [m]
+} barrier_kept_edges;
 
 typedef struct barrier_contacts {
     barrier_contact *contact;
@@ -189,16 +197,18 @@ struct brunt_barrier {
     int32_t workspace_count;
     size_t workspace_capacity;
     barrier_contacts contacts, lagged;
-    barrier_rub *rub;   // of `lagged`
-    barrier_kept *kept; // BARRIER_KEPT of each vertex, where load steps keep slips
-    double touch;       // [m] gaps below which surfaces are joined (barrier_join.c); 0: they are not
+    barrier_rub *rub;               // of `lagged`
+    barrier_kept *kept;             // BARRIER_KEPT of each vertex, where load steps keep slips
+    barrier_kept_edges *kept_edges; // in three dimensions: of edges that crossed as the last step ended
+    int64_t kept_edges_count;
+    double touch; // [m] gaps below which surfaces are joined (barrier_join.c); 0: they are not
     bool keeps;
     bool live;          // friction follows normal forces and directions as they are, not as they were at the last lag
     bool tries;         // and what it is at a place that is tried is asked for
     const double *from; // meanwhile, where it has a potential: where the round began (barrier_cone.c)
     barrier_felt *felt, *felt_before; // meanwhile: of `lagged` where that was looked at last, and room
     int64_t felt_count;
-    size_t rub_capacity, kept_capacity, felt_capacity, felt_before_capacity;
+    size_t rub_capacity, kept_capacity, kept_edges_capacity, felt_capacity, felt_before_capacity;
     barrier_sets sets, lagged_sets;
     brunt_colours colours, lagged_colours;
 };
@@ -302,8 +312,8 @@ void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, 
 void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *hessian);
 // [N] with which the features push each other apart; of contacts of negative weight negative.
 double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c);
-// [N/m] Its slope by the gap.
-double barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c);
+// [N/m] Its slope by the components of its places.
+void barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c, double *slope);
 // Whether a contact that pushes is stiffer for what it moves than `step` [s] follows: then `step` is what does.
 bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step);
 
@@ -349,8 +359,9 @@ void barrier_join_gradient(const brunt_barrier *b, const barrier_contact *c, dou
 void barrier_join_hessian(const brunt_barrier *b, const barrier_contact *c, double *hessian);
 
 // --- from load step to load step (barrier_memory.c)
-// How far the surfaces of a contact had given before the step [m]; 0: nothing is kept.
-void barrier_kept_slip(const brunt_barrier *b, const barrier_contact *c, double slip[3]);
+// How far the surfaces of a contact had given before the step [m], turned to be along them; 0: nothing is kept. How far
+// along the normal that was before it was turned.
+double barrier_kept_slip(const brunt_barrier *b, const barrier_contact *c, double slip[3]);
 
 // --- into the unknowns (barrier_sum.c)
 void barrier_add_gradient(const brunt_barrier *b, const barrier_contact *c, const double *local, double *g);

@@ -100,7 +100,7 @@ static double share_of(const brunt_barrier *b, const barrier_contact *c, const d
 
 void barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub) {
     *rub = (barrier_rub){.energy = 0};
-    barrier_kept_slip(b, c, rub->kept);
+    rub->turned = barrier_kept_slip(b, c, rub->kept);
     rub->share = share_of(b, c, u);
     const barrier_slip s = barrier_slip_at(b, c, u);
     for (int k = 0; k < 3; k++) rub->slip[k] = s.y[k], rub->part[k] = s.ratio * s.y[k];
@@ -123,39 +123,50 @@ void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const
 // g_i = w_i f of place i, f = F r(|y|) y with F = mu N: dg_i = dw_i f + w_i (dF w + F d(r y)), where d(r y) is that of
 // the smooth form above, with w the force that is an unknown of its own: the true derivative where w = r y, and no wall
 // where a slip turns round. The first place is a point, w = 1, so that its rows of the Hessian of d are dn, and n times
-// those of the others their dw.
+// those of the others their dw. Of two edges that cross it is the first that moves against the second: its ends' rows
+// sum up to dn, as their weights do to 1.
+//
+// What was kept, k, and had a along the normal before it was turned along the surfaces, turns on with them by -a (dn -
+// k k . dn / k . k), where dn is not along it.
 void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double part[3], const double *u,
                           double *tangent) {
     const int dim = b->dim, places = c->at.places, rows = places * dim;
     const barrier_slip s = barrier_slip_at(b, c, u);
-    const double *n = c->at.n, greatest = greatest_force(b, c), slope = barrier_contact_force_slope(b, c),
+    const double *n = c->at.n, greatest = greatest_force(b, c),
                  mu = c->normal_force > 0 ? greatest / c->normal_force : 0;
-    double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], slip[3];
+    double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], slip[3], slope[BARRIER_DOFS];
+    const int first = c->threshold > 0 ? 2 : 1; // places of the first feature
     const double apart = -barrier_approach(b, c, u), share = share_of(b, c, u);
     brunt_closest_hessian(&c->at, dim, 0, 1, turn);
+    barrier_contact_force_slope(b, c, slope);
     for (int i = 0; i < places; i++) barrier_move(b, c->place[i], u, move[i]);
     barrier_slip_of(b, c, u, slip);
+    const double *kept = b->rub[c - b->lagged.contact].kept, turns = b->rub[c - b->lagged.contact].turned,
+                 square = kept[0] * kept[0] + kept[1] * kept[1] + kept[2] * kept[2];
     // d(r y) = r (dy - (1/r)' w (y . dy) / |y|)
     const double bend = s.size > 0 ? s.bend / s.size : 0;
     for (int j = 0; j < places; j++)
         for (int l = 0; l < dim; l++) {
             const int column = j * dim + l;
             double dn[3] = {0}, dw[BRUNT_CLOSEST_PLACES] = {0}, dy[3] = {0}, across = 0, along = 0, normal = 0,
-                   turned = 0;
-            for (int k = 0; k < dim; k++) dn[k] = turn[k * rows + column];
-            for (int i = 1; i < places; i++)
+                   turned = 0, of_kept = 0;
+            for (int i = 0; i < first; i++)
+                for (int k = 0; k < dim; k++) dn[k] += turn[(i * dim + k) * rows + column];
+            for (int i = first == 1; i < places; i++)
                 for (int k = 0; k < dim; k++) dw[i] += n[k] * turn[(i * dim + k) * rows + column];
             for (int k = 0; k < dim; k++) {
                 dy[k] = (k == l) * c->at.w[j];
-                for (int i = 1; i < places; i++) dy[k] += dw[i] * move[i][k];
+                for (int i = first == 1; i < places; i++) dy[k] += dw[i] * move[i][k];
                 across += dy[k] * n[k], normal += dn[k] * s.y[k], turned += dn[k] * slip[k];
+                of_kept += square > 0 ? dn[k] * kept[k] / square : 0;
             }
             // The share is that of the gap within the distance in the approach, -apart.
             const double more = share < 1 ? (c->at.w[j] * n[l] - share * (across + turned)) / apart : 0;
             for (int k = 0; k < dim; k++)
-                dy[k] = share * dy[k] - (share * (across * n[k] + apart * dn[k]) + normal * n[k]) + more * slip[k];
+                dy[k] = share * dy[k] - (share * (across * n[k] + apart * dn[k]) + normal * n[k]) + more * slip[k] -
+                        turns * (dn[k] - of_kept * kept[k]);
             for (int k = 0; k < dim; k++) along += s.y[k] * dy[k];
-            const double dF = mu * slope * c->at.w[j] * n[l];
+            const double dF = mu * slope[column];
             for (int k = 0; k < dim; k++) {
                 const double f = greatest * s.ratio * s.y[k],
                              df = dF * part[k] + greatest * s.ratio * (dy[k] - bend * along * part[k]);

@@ -7,10 +7,10 @@
 #define BRUNT_EXPLICIT_ONLY "this belongs to time.scheme: explicit"
 #define BRUNT_NOT_STATIC "this belongs to time.scheme: explicit or implicit"
 #define BRUNT_FRICTION_NOT_STATIC                                                                                      \
-    BRUNT_NOT_STATIC ": load steps have friction of meshes in two dimensions, and there are others"
+    BRUNT_NOT_STATIC ": load steps have friction of meshes, that are not axisymmetric, and there are others"
 // Whether load steps have friction: what surfaces have given is kept by vertices of meshes.
 static inline bool brunt_friction_in_load_steps(const brunt_world_def *def) {
-    bool meshes = def->dimension == 2 && !def->axisymmetric;
+    bool meshes = !def->axisymmetric;
     for (int32_t i = 0; i < def->body_count; i++) meshes = meshes && def->bodies[i].method == BRUNT_FEM;
     return meshes;
 }

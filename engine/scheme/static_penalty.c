@@ -40,10 +40,17 @@ void brunt_implicit_kept_get(const brunt_plan *plan, double *to) {
     if (c->reach > 0) to[brunt_barrier_kept_count(c->barrier)] = c->seen ? c->width : 0;
 }
 
-void brunt_implicit_kept_set(const brunt_plan *plan, const double *from) {
+bool brunt_implicit_kept_fits(const brunt_plan *plan, int64_t count) {
+    const brunt_implicit_contact *c = keeper(plan);
+    return c ? brunt_barrier_kept_fits(c->barrier, count - (c->reach > 0)) : count == 0;
+}
+
+int brunt_implicit_kept_set(const brunt_plan *plan, const double *from, int64_t count, brunt_error *error) {
     brunt_implicit_contact *c = keeper(plan);
-    if (!c) return;
-    brunt_barrier_kept_set(c->barrier, from);
-    const double kept = c->reach > 0 ? from[brunt_barrier_kept_count(c->barrier)] : 0;
+    if (!c) return BRUNT_OK;
+    const int64_t slips = count - (c->reach > 0);
+    if (brunt_barrier_kept_set(c->barrier, from, slips, error)) return BRUNT_FAILED;
+    const double kept = c->reach > 0 ? from[slips] : 0;
     if (kept > 0) brunt_implicit_contact_widen(c, kept);
+    return BRUNT_OK;
 }

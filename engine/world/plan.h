@@ -21,10 +21,12 @@ void brunt_plan_validate(const brunt_plan *plan);
 // What implicit steps keep beside the world, once its bodies are sorted. BRUNT_OK, or the code of what is wrong.
 int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies);
-// What load steps with friction keep from step to step, as numbers (contact/barrier/barrier_memory.c).
+// What load steps with friction keep from step to step, as numbers (contact/barrier/barrier_memory.c): of meshes in
+// three dimensions more or fewer as steps go on. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int64_t brunt_implicit_kept_count(const brunt_plan *plan);
 void brunt_implicit_kept_get(const brunt_plan *plan, double *to);
-void brunt_implicit_kept_set(const brunt_plan *plan, const double *from);
+bool brunt_implicit_kept_fits(const brunt_plan *plan, int64_t count);
+int brunt_implicit_kept_set(const brunt_plan *plan, const double *from, int64_t count, brunt_error *error);
 // Aborts where unknowns, terms, contact or matrices do not belong to each other and to what there is in the world.
 void brunt_implicit_validate(const struct brunt_implicit *implicit, const brunt_bodies *bodies,
                              const brunt_boundaries *boundaries, int pairs);

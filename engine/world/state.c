@@ -163,10 +163,11 @@ static void world_get(brunt_world *world, int block, double *to) {
         to = get_account(&world->pairs.pair[p].last, get_account(&world->pairs.pair[p].account, to));
 }
 
-static int world_set(brunt_world *world, int block, const double *from, brunt_error *error) {
+static int world_set(brunt_world *world, int block, const double *from, int64_t count, brunt_error *error) {
     if (block == EROSION_BLOCK) brunt_erosion_state_set(&world->erosion, from);
     if (block == NEWTON_BLOCK)
-        brunt_implicit_kept_set(&world->plan, brunt_saved_set(newton_table, NEWTON_ROWS, world, from));
+        return brunt_implicit_kept_set(&world->plan, brunt_saved_set(newton_table, NEWTON_ROWS, world, from),
+                                       count - brunt_saved_count(newton_table, NEWTON_ROWS), error);
     if (block == SEARCH_BLOCK && set_search(&world->contact, world->bodies.mpm_count, from, error)) return BRUNT_FAILED;
     if (block == 4) brunt_surface_affine_set(&world->contact.surface, from);
     if (block == 0) from = brunt_saved_set(clock_table, CLOCK_ROWS, world, from);
@@ -205,8 +206,10 @@ static int check_set(brunt_world *world, int32_t index, const void *in, int64_t 
     const block_location at = find(world, index);
     const brunt_body *mpm = at.body ? at.body->mpm : NULL;
     // Of a body that erodes there may be fewer particles by now than in the world as it is; its ids say how many.
-    const bool fits =
-        mpm && at.block == 0 && mpm->erodes ? count >= 0 && count <= mpm->particles.made : count == block.count;
+    bool fits = count == block.count;
+    if (mpm && at.block == 0 && mpm->erodes) fits = count >= 0 && count <= mpm->particles.made;
+    if (!at.body && at.block == NEWTON_BLOCK)
+        fits = brunt_implicit_kept_fits(&world->plan, count - brunt_saved_count(newton_table, NEWTON_ROWS));
     if (!fits)
         return brunt_fail(error, BRUNT_BAD_INPUT, "the state block '%s' holds %lld values, this scene has %lld",
                           block.name, (long long)count, (long long)block.count);
@@ -225,7 +228,7 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
     int status = check_set(world, index, in, count, error);
     if (status) return status;
     const block_location at = find(world, index);
-    if (!at.body) return world_set(world, at.block, in, error);
+    if (!at.body) return world_set(world, at.block, in, count, error);
     status = at.body->ops->block_set(at.body, at.block, in, count, error);
     const bool elements = at.body->fem && at.body->fem->bonds && at.block == 1;
     return status || !elements ? status : follow_elements(world, at.body->fem, error);

@@ -84,19 +84,19 @@ START_TEST(derivatives_of_whole_terms) {
 END_TEST
 
 // Friction that follows what presses, and what has been kept of the step before: forces without an energy, whose
-// derivative is not symmetric. Of points at facets, at vertices and at planes, that creep and that slip; of points that
-// have met the surface in this step, most of which were beyond the distance before it.
+// derivative is not symmetric. Of points at facets, at vertices and at planes, and edges that cross, that creep and
+// that slip; of what has met the surface in this step, most of which was beyond the distance before it.
 START_TEST(friction_that_follows_has_its_derivative) {
-    static const int of_points[] = {0, 1, 4, 5, 6, 4, 5, 6};
-    enum { MEETING = 5 };
-    for (size_t k = 0; k < sizeof of_points / sizeof *of_points; k++)
+    static const int cases[] = {0, 1, 4, 5, 6, 2, 3, 4, 5, 6, 2, 3};
+    enum { MEETING = 7 };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         for (int slips = 0; slips < 2; slips++) {
-            barrier_case *c = make_case(of_points[k]);
+            barrier_case *c = make_case(cases[k]);
             const brunt_team team = {c->threads, NULL};
             double *u = case_unknowns(c);
             const double size = k < MEETING ? 1e-3 : 4e-3;
             c->pair[0].slip_speed = slips ? 1e-3 : k < MEETING ? 0.5 : 10;
-            if (k >= MEETING) c->pair[0].distance = 0.014;
+            if (k >= MEETING) c->pair[0].distance = cases[k] == 2 || cases[k] == 3 ? 0.03 : 0.014;
             case_ready(c);
             ck_assert_int_eq(brunt_barrier_keep_slips(c->barrier, NULL), BRUNT_OK);
             draw_unknowns(c, u, size, 23);
@@ -104,7 +104,7 @@ START_TEST(friction_that_follows_has_its_derivative) {
             draw_unknowns(c, u, size, 24);
             brunt_barrier_follow(c->barrier, true);
             const double lean = check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8, false);
-            ck_assert_msg(lean > 1e-2, "case %d: symmetric to %g", of_points[k], lean);
+            ck_assert_msg(lean > 1e-2, "case %d: symmetric to %g", cases[k], lean);
             free(u), case_end(c);
         }
 }
@@ -241,6 +241,53 @@ START_TEST(load_steps_rub_from_where_surfaces_meet) {
         ck_assert_double_gt(pressed, 0);
         ck_assert_double_eq_tol(g[2 * c->node[3]], 0.3 * pressed * (2 * x - x * x), 1e-12 * pressed);
         free(u), free(g), case_end(c);
+    }
+}
+END_TEST
+
+// The force of friction on a block whose surface has given by `given` along x, and is pushed on to where other edges
+// cross than did; what presses it.
+static double rubs_at(double given, int block, double *pressed) {
+    barrier_case *c = case_begin(3);
+    const brunt_team team = {c->threads, NULL};
+    for (int body = 0; body < 2; body++)
+        if (body == block)
+            case_box(c, body, (double[3]){0.3, 0.3, 0.51}, (double[3]){0.7, 0.7, 1}, 4, true);
+        else
+            case_box(c, body, (double[3]){0, 0, 0}, (double[3]){1, 1, 0.5}, 2, true);
+    case_pair(c, 0, 1, 0.02, 1e5)->friction = 0.3;
+    c->pair[0].slip_speed = 1e4 / c->dt; // gives in proportion to what is asked
+    case_ready(c);
+    ck_assert_int_eq(brunt_barrier_keep_slips(c->barrier, NULL), BRUNT_OK);
+    double *u = case_unknowns(c), *g = case_unknowns(c), force = 0;
+    for (int32_t v = 0; v < c->vertices; v++)
+        if (c->body[v] == block) u[3 * c->node[v]] = given;
+    ck_assert_int_eq(brunt_barrier_keep(c->barrier, &team, u, NULL), BRUNT_OK);
+    for (int32_t v = 0; v < c->vertices; v++)
+        if (c->body[v] == block) u[3 * c->node[v]] = 0.13;
+    case_lag(c, u);
+    const brunt_term rub = brunt_barrier_friction_term(c->barrier), push = brunt_barrier_term(c->barrier);
+    case_look(c, u, NULL);
+    push.ops->gradient(push.self, &team, u, g);
+    *pressed = 0;
+    for (int32_t v = 0; v < c->vertices; v++)
+        if (c->body[v] == block) *pressed -= g[3 * c->node[v] + 2];
+    memset(g, 0, (size_t)c->nodes * 3 * sizeof *g);
+    rub.ops->gradient(rub.self, &team, u, g);
+    for (int32_t v = 0; v < c->vertices; v++)
+        if (c->body[v] == block) force += g[3 * c->node[v]];
+    free(u), free(g), case_end(c);
+    return force;
+}
+
+// What points have kept goes to edges that cross anew, the same way for both bodies: the force is that of all that has
+// been given by all that presses.
+START_TEST(edges_that_meet_anew_have_given_what_their_ends_have) {
+    for (int block = 0; block < 2; block++) {
+        double pressed, other;
+        const double given = 2e-3, more = rubs_at(given, block, &pressed) - rubs_at(0, block, &other);
+        ck_assert_double_eq(pressed, other);
+        ck_assert_double_eq_tol(more / (0.3 * pressed * 2 * given / 1e4), 1, 0.02); // normals lean at its border
     }
 }
 END_TEST
@@ -618,6 +665,7 @@ int main(void) {
     tcase_add_test(terms, friction_that_turns_round_is_tried_with_its_force);
     tcase_add_test(terms, associated_friction_is_coulombs_where_it_began);
     tcase_add_test(terms, load_steps_rub_from_where_surfaces_meet);
+    tcase_add_test(terms, edges_that_meet_anew_have_given_what_their_ends_have);
     tcase_add_test(terms, sums_are_constant_along_a_polygon);
     tcase_add_test(terms, sums_are_constant_along_a_triangulation);
     tcase_add_test(terms, a_pair_has_the_energy_of_its_method);
