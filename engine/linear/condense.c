@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "linear/assembly.h"
 
-enum { DIM = 2, LEAST_KEPT = 3, BODY_GRAIN = 8 }; // nodes that hold a body in two dimensions, and one to spare
+enum { BODY_GRAIN = 8 };
 static const char WHAT[] = "bodies to condense";
 
 // ------------------------------------------------------------------------------------------ dense matrices
@@ -76,7 +76,7 @@ static void solve_one(int n, const double *U, double *x) {
 
 // A of `all` nodes without those gone: S of the kept ones, U and C of the gone; `side` is room for what C has.
 typedef struct parted {
-    int all, kept_count, gone_count;
+    int dim, all, kept_count, gone_count;
     const double *A;
     const int32_t *kept, *gone;
     double *S, *U, *C;
@@ -84,14 +84,15 @@ typedef struct parted {
 
 // Rows and columns of A for lists of nodes.
 static void take_part(const parted *p, const int32_t *rows, int m, const int32_t *columns, int n, double *part) {
-    for (int a = 0; a < m * DIM; a++)
-        for (int b = 0; b < n * DIM; b++)
-            part[(int64_t)a * n * DIM + b] =
-                p->A[(int64_t)(rows[a / DIM] * DIM + a % DIM) * p->all * DIM + columns[b / DIM] * DIM + b % DIM];
+    const int dim = p->dim;
+    for (int a = 0; a < m * dim; a++)
+        for (int b = 0; b < n * dim; b++)
+            part[(int64_t)a * n * dim + b] =
+                p->A[(int64_t)(rows[a / dim] * dim + a % dim) * p->all * dim + columns[b / dim] * dim + b % dim];
 }
 
 static bool reduce(const parted *p, double *side) {
-    const int k = p->kept_count * DIM, g = p->gone_count * DIM;
+    const int dim = p->dim, k = p->kept_count * dim, g = p->gone_count * dim;
     take_part(p, p->kept, p->kept_count, p->kept, p->kept_count, p->S);
     take_part(p, p->gone, p->gone_count, p->gone, p->gone_count, p->U);
     take_part(p, p->gone, p->gone_count, p->kept, p->kept_count, p->C);
@@ -112,38 +113,44 @@ static bool reduce(const parted *p, double *side) {
 
 // ------------------------------------------------------------------------------------------ meshes
 
-// About the middle of the nodes, the turn by their mean distance from it.
+// About the middle of the nodes, turns by their mean distance from it: about z, in three dimensions about x and y as
+// well.
 static void take_modes(brunt_condensed_mesh *mesh, const double *x) {
-    double middle[DIM] = {0}, square = 0;
-    for (int k = 0; k < mesh->nodes * DIM; k++) middle[k % DIM] += x[k] / mesh->nodes;
-    for (int k = 0; k < mesh->nodes * DIM; k++) square += (x[k] - middle[k % DIM]) * (x[k] - middle[k % DIM]);
+    const int dim = mesh->dim;
+    double middle[3] = {0}, square = 0;
+    for (int k = 0; k < mesh->nodes * dim; k++) middle[k % dim] += x[k] / mesh->nodes;
+    for (int k = 0; k < mesh->nodes * dim; k++) square += (x[k] - middle[k % dim]) * (x[k] - middle[k % dim]);
     const double size = sqrt(square / mesh->nodes);
-    for (int k = 0; k < mesh->nodes * DIM; k++) {
-        const int a = k % DIM, n = k / DIM;
-        double *mode = mesh->mode + k * BRUNT_RIGID;
-        mode[a] = 1, mode[1 - a] = 0;
-        mode[DIM] = (a == 0 ? -1 : 1) * (x[n * DIM + 1 - a] - middle[1 - a]) / size;
+    for (int k = 0; k < mesh->nodes * dim; k++) {
+        const int a = k % dim, n = k / dim;
+        double *mode = mesh->mode + k * mesh->motions;
+        for (int m = 0; m < mesh->motions; m++) mode[m] = m == a;
+        for (int p = 0; p < mesh->motions - dim; p++) { // from axis `one` to axis `other`
+            const int one = p == 1, other = p == 0 ? 1 : 2;
+            if (a == one) mode[dim + p] = -(x[n * dim + other] - middle[other]) / size;
+            if (a == other) mode[dim + p] = (x[n * dim + one] - middle[one]) / size;
+        }
     }
 }
 
-int brunt_condensed_mesh_make(brunt_condensed_mesh *mesh, int nodes, const double *K, const double *x,
+int brunt_condensed_mesh_make(brunt_condensed_mesh *mesh, int dim, int nodes, const double *K, const double *x,
                               const uint8_t *on_rim, brunt_error *error) {
-    *mesh = (brunt_condensed_mesh){.nodes = nodes};
+    *mesh = (brunt_condensed_mesh){.dim = dim, .motions = dim * (dim + 1) / 2, .nodes = nodes};
     for (int n = 0; n < nodes; n++) *(on_rim[n] ? &mesh->rim_count : &mesh->inner_count) += 1;
-    const size_t rim = (size_t)(mesh->rim_count * DIM), inner = (size_t)(mesh->inner_count * DIM);
+    const size_t rim = (size_t)(mesh->rim_count * dim), inner = (size_t)(mesh->inner_count * dim);
     double *side;
     int status = BRUNT_NEW(side, inner * rim + 1, WHAT, error);
     if (!status)
         status = BRUNT_NEW(mesh->rim, rim + 1, WHAT, error) || BRUNT_NEW(mesh->inner, inner + 1, WHAT, error) ||
-                 BRUNT_NEW(mesh->mode, nodes * DIM * BRUNT_RIGID, WHAT, error) ||
+                 BRUNT_NEW(mesh->mode, nodes * dim * mesh->motions, WHAT, error) ||
                  BRUNT_NEW(mesh->K, rim * rim + 1, WHAT, error) || BRUNT_NEW(mesh->U, inner * inner + 1, WHAT, error) ||
                  BRUNT_NEW(mesh->C, inner * rim + 1, WHAT, error);
     if (!status) {
         int r = 0, i = 0;
         take_modes(mesh, x);
         for (int n = 0; n < nodes; n++) *(on_rim[n] ? &mesh->rim[r++] : &mesh->inner[i++]) = n;
-        const parted p = {nodes,       mesh->rim_count, mesh->inner_count, K,      mesh->rim,
-                          mesh->inner, mesh->K,         mesh->U,           mesh->C};
+        const parted p = {dim,       nodes,       mesh->rim_count, mesh->inner_count, K,
+                          mesh->rim, mesh->inner, mesh->K,         mesh->U,           mesh->C};
         if (!reduce(&p, side))
             status = brunt_fail(error, BRUNT_FAILED,
                                 "the Hessian of a mesh of %d nodes is not positive definite with "
@@ -163,19 +170,23 @@ void brunt_condensed_mesh_free(brunt_condensed_mesh *mesh) {
 
 // ------------------------------------------------------------------------------------------ bodies
 
+// Nodes that hold a body, and one to spare.
+static int least_kept(const brunt_condensed_mesh *mesh) { return mesh->dim + 1; }
+
 static int make_body(brunt_condensation *c, int k, brunt_error *error) {
     brunt_condensed_body *b = &c->body[k];
     const brunt_condensed_mesh *mesh = b->mesh;
-    const size_t rim = (size_t)mesh->rim_count, size = rim * (size_t)DIM, all = (size_t)(mesh->nodes * DIM);
-    BRUNT_ASSERT(b->base + mesh->nodes <= c->nodes && rim >= LEAST_KEPT);
+    const int dim = mesh->dim;
+    const size_t rim = (size_t)mesh->rim_count, size = rim * (size_t)dim, all = (size_t)(mesh->nodes * dim);
+    BRUNT_ASSERT(b->base + mesh->nodes <= c->nodes && mesh->rim_count >= least_kept(mesh));
     for (int i = 0; i < mesh->rim_count; i++)
         c->owner[b->base + mesh->rim[i]] = k, c->place[b->base + mesh->rim[i]] = i;
     for (int i = 0; i < mesh->inner_count; i++)
         c->owner[b->base + mesh->inner[i]] = k, c->place[b->base + mesh->inner[i]] = -1 - i;
     return BRUNT_NEW(b->touched, rim, WHAT, error) || BRUNT_NEW(b->is_kept, rim, WHAT, error) ||
            BRUNT_NEW(b->kept, rim, WHAT, error) || BRUNT_NEW(b->gone, rim, WHAT, error) ||
-           BRUNT_NEW(b->parts, size * size, WHAT, error) || BRUNT_NEW(b->carry, size * BRUNT_RIGID, WHAT, error) ||
-           BRUNT_NEW(b->solved, all, WHAT, error);
+           BRUNT_NEW(b->parts, size * size, WHAT, error) ||
+           BRUNT_NEW(b->carry, size * (size_t)mesh->motions, WHAT, error) || BRUNT_NEW(b->solved, all, WHAT, error);
 }
 
 int brunt_condensation_make(brunt_condensation *c, int32_t nodes, int terms, brunt_error *error) {
@@ -206,8 +217,9 @@ void brunt_condensation_free(brunt_condensation *c) {
 size_t brunt_condensation_bytes(const brunt_condensation *c) {
     size_t numbers = 0;
     for (int k = 0; k < c->count; k++) {
-        const size_t rim = (size_t)(c->body[k].mesh->rim_count * DIM);
-        numbers += rim * rim + (size_t)(c->body[k].mesh->nodes * DIM);
+        const brunt_condensed_mesh *mesh = c->body[k].mesh;
+        const size_t rim = (size_t)(mesh->rim_count * mesh->dim);
+        numbers += rim * rim + (size_t)(mesh->nodes * mesh->dim);
     }
     return numbers * sizeof(double) + c->dense_capacity;
 }
@@ -217,26 +229,28 @@ size_t brunt_condensation_bytes(const brunt_condensation *c) {
 // P (P^T P)^-1 of the modes P of kept nodes. False: they are in one place.
 static bool take_carry(const brunt_condensed_body *b) {
     const brunt_condensed_mesh *mesh = b->mesh;
+    const int dim = mesh->dim, motions = mesh->motions;
     double gram[BRUNT_RIGID * BRUNT_RIGID] = {0};
-    for (int k = 0; k < b->kept_count * DIM; k++) {
-        const double *mode = mesh->mode + (mesh->rim[b->kept[k / DIM]] * DIM + k % DIM) * BRUNT_RIGID;
-        memcpy(b->carry + k * BRUNT_RIGID, mode, BRUNT_RIGID * sizeof *mode);
-        for (int p = 0; p < BRUNT_RIGID; p++) add_row(BRUNT_RIGID, mode[p], mode, gram + p * BRUNT_RIGID);
+    for (int k = 0; k < b->kept_count * dim; k++) {
+        const double *mode = mesh->mode + (mesh->rim[b->kept[k / dim]] * dim + k % dim) * motions;
+        memcpy(b->carry + k * motions, mode, (size_t)motions * sizeof *mode);
+        for (int p = 0; p < motions; p++) add_row(motions, mode[p], mode, gram + p * motions);
     }
-    if (!take_factor(BRUNT_RIGID, gram)) return false;
-    for (int k = 0; k < b->kept_count * DIM; k++) solve_rows(BRUNT_RIGID, gram, 1, b->carry + k * BRUNT_RIGID);
+    if (!take_factor(motions, gram)) return false;
+    for (int k = 0; k < b->kept_count * dim; k++) solve_rows(motions, gram, 1, b->carry + k * motions);
     return true;
 }
 
 static bool reduce_body(brunt_condensed_body *b) {
     const brunt_condensed_mesh *mesh = b->mesh;
+    const int dim = mesh->dim;
     int gone = 0;
     b->kept_count = 0;
     for (int i = 0; i < mesh->rim_count; i++) *(b->is_kept[i] ? &b->kept[b->kept_count++] : &b->gone[gone++]) = i;
-    double *side = brunt_alloc(((size_t)gone * (size_t)b->kept_count * (size_t)(DIM * DIM) + 1) * sizeof *side);
-    const int64_t size = (int64_t)b->kept_count * DIM, left = (int64_t)gone * DIM;
+    double *side = brunt_alloc(((size_t)gone * (size_t)b->kept_count * (size_t)(dim * dim) + 1) * sizeof *side);
+    const int64_t size = (int64_t)b->kept_count * dim, left = (int64_t)gone * dim;
     b->S = b->parts, b->U = b->S + size * size, b->C = b->U + left * left;
-    const parted p = {mesh->rim_count, b->kept_count, gone, mesh->K, b->kept, b->gone, b->S, b->U, b->C};
+    const parted p = {dim, mesh->rim_count, b->kept_count, gone, mesh->K, b->kept, b->gone, b->S, b->U, b->C};
     const bool done = side && reduce(&p, side) && take_carry(b);
     for (int64_t k = 0; k < size * size; k++) b->S[k] *= b->scale;
     if (!done) b->kept_count = 0;
@@ -249,8 +263,8 @@ static void reduce_bodies(void *context, int64_t begin, int64_t end, int worker)
     (void)worker;
     for (int64_t k = begin; k < end; k++) {
         brunt_condensed_body *b = &c->body[k];
-        const int rim = b->mesh->rim_count;
-        for (int q = 0; q < LEAST_KEPT; q++) b->touched[q * rim / LEAST_KEPT] = 1;
+        const int rim = b->mesh->rim_count, least = least_kept(b->mesh);
+        for (int q = 0; q < least; q++) b->touched[q * rim / least] = 1;
         if (b->kept_count > 0 && !memcmp(b->touched, b->is_kept, (size_t)rim)) continue;
         memcpy(b->is_kept, b->touched, (size_t)rim);
         reduce_body(b);
@@ -281,7 +295,7 @@ int brunt_condensation_touch(brunt_condensation *c, const brunt_team *team, brun
         for (int i = 0; i < b->kept_count; i++) c->node[c->first[k] + i] = b->base + b->mesh->rim[b->kept[i]];
     }
     for (int k = 0; k < c->count; k++) {
-        const int64_t size = (int64_t)c->body[k].kept_count * DIM;
+        const int64_t size = (int64_t)c->body[k].kept_count * c->body[k].mesh->dim;
         c->dense_size = size * size > c->dense_size ? size * size : c->dense_size;
     }
     if (BRUNT_CAPACITY(c->dense, (size_t)(c->dense_size * team->threads), 0, WHAT, error)) return BRUNT_FAILED;
@@ -299,25 +313,24 @@ typedef struct fill_work {
 // Row n of the body's becomes that of the unit matrix; what it had on the diagonal is added to `gram`, by rigid
 // motions.
 static void leave_out(const brunt_condensed_body *b, brunt_block_matrix *m, int n, double *gram) {
+    const int dim = b->mesh->dim, motions = b->mesh->motions;
     double *d = brunt_block_matrix_diagonal(m, b->base + n);
-    for (int a = 0; a < DIM; a++) {
-        const double *mode = b->mesh->mode + (n * DIM + a) * BRUNT_RIGID;
-        for (int p = 0; p < BRUNT_RIGID; p++)
-            add_row(BRUNT_RIGID, d[a * (DIM + 1)] * mode[p], mode, gram + p * BRUNT_RIGID);
-        for (int e = 0; e < DIM; e++) d[a * DIM + e] = e == a;
+    for (int a = 0; a < dim; a++) {
+        const double *mode = b->mesh->mode + (n * dim + a) * motions;
+        for (int p = 0; p < motions; p++) add_row(motions, d[a * (dim + 1)] * mode[p], mode, gram + p * motions);
+        for (int e = 0; e < dim; e++) d[a * dim + e] = e == a;
     }
 }
 
 // S, and what rigid motions have of the nodes that are left out, the same of kept ones.
 static void take_dense(const brunt_condensed_body *b, const double *gram, double *dense) {
-    const int size = b->kept_count * DIM;
+    const int size = b->kept_count * b->mesh->dim, motions = b->mesh->motions;
     memcpy(dense, b->S, (size_t)size * (size_t)size * sizeof *dense);
     for (int i = 0; i < size; i++) {
         double row[BRUNT_RIGID] = {0};
-        for (int p = 0; p < BRUNT_RIGID; p++)
-            add_row(BRUNT_RIGID, b->carry[i * BRUNT_RIGID + p], gram + p * BRUNT_RIGID, row);
+        for (int p = 0; p < motions; p++) add_row(motions, b->carry[i * motions + p], gram + p * motions, row);
         for (int j = 0; j < size; j++)
-            for (int p = 0; p < BRUNT_RIGID; p++) dense[i * size + j] += row[p] * b->carry[j * BRUNT_RIGID + p];
+            for (int p = 0; p < motions; p++) dense[i * size + j] += row[p] * b->carry[j * motions + p];
     }
 }
 
@@ -351,15 +364,24 @@ typedef struct vector_work {
 
 enum { SIDE = 1024 }; // components of a body's side, at most
 
-// To or from the components of listed nodes, numbers in the rim (or, `of` NULL, nodes themselves).
-static void take_nodes(const double *x, const int32_t *of, const int32_t *list, int count, double *part) {
-    for (int i = 0; i < count; i++)
-        for (int a = 0; a < DIM; a++) part[i * DIM + a] = x[(of ? of[list[i]] : list[i]) * (int64_t)DIM + a];
+// To or from the components of listed nodes: numbers in the rim (or, `of` NULL, nodes themselves).
+typedef struct node_list {
+    int dim, count;
+    const int32_t *node;
+} node_list;
+
+static node_list list_of(const brunt_condensed_mesh *mesh, const int32_t *node, int count) {
+    return (node_list){mesh->dim, count, node};
 }
 
-static void put_nodes(double *x, const int32_t *of, const int32_t *list, int count, const double *part) {
-    for (int i = 0; i < count; i++)
-        for (int a = 0; a < DIM; a++) x[(of ? of[list[i]] : list[i]) * (int64_t)DIM + a] = part[i * DIM + a];
+static void take_nodes(const double *x, const int32_t *of, node_list l, double *part) {
+    for (int i = 0; i < l.count; i++)
+        for (int a = 0; a < l.dim; a++) part[i * l.dim + a] = x[(of ? of[l.node[i]] : l.node[i]) * (int64_t)l.dim + a];
+}
+
+static void put_nodes(double *x, const int32_t *of, node_list l, const double *part) {
+    for (int i = 0; i < l.count; i++)
+        for (int a = 0; a < l.dim; a++) x[(of ? of[l.node[i]] : l.node[i]) * (int64_t)l.dim + a] = part[i * l.dim + a];
 }
 
 // f_k -= C^T f_g, and f_g becomes K_gg^-1 f_g of the mesh as it is scaled.
@@ -371,16 +393,16 @@ static void gather_part(int k, int g, const double *U, const double *C, double s
 
 static void gather_body(const brunt_condensed_body *b, double *x) {
     const brunt_condensed_mesh *mesh = b->mesh;
-    const int left = mesh->rim_count - b->kept_count;
-    double *inner = b->solved + mesh->rim_count * DIM, rim[SIDE], kept[SIDE];
-    take_nodes(x, NULL, mesh->inner, mesh->inner_count, inner);
-    take_nodes(x, NULL, mesh->rim, mesh->rim_count, rim);
-    gather_part(mesh->rim_count * DIM, mesh->inner_count * DIM, mesh->U, mesh->C, b->scale, rim, inner);
-    take_nodes(rim, NULL, b->gone, left, b->solved);
-    take_nodes(rim, NULL, b->kept, b->kept_count, kept);
-    gather_part(b->kept_count * DIM, left * DIM, b->U, b->C, b->scale, kept, b->solved);
-    memset(x, 0, (size_t)(mesh->nodes * DIM) * sizeof *x);
-    put_nodes(x, mesh->rim, b->kept, b->kept_count, kept);
+    const int dim = mesh->dim, left = mesh->rim_count - b->kept_count;
+    double *inner = b->solved + mesh->rim_count * dim, rim[SIDE], kept[SIDE];
+    take_nodes(x, NULL, list_of(mesh, mesh->inner, mesh->inner_count), inner);
+    take_nodes(x, NULL, list_of(mesh, mesh->rim, mesh->rim_count), rim);
+    gather_part(mesh->rim_count * dim, mesh->inner_count * dim, mesh->U, mesh->C, b->scale, rim, inner);
+    take_nodes(rim, NULL, list_of(mesh, b->gone, left), b->solved);
+    take_nodes(rim, NULL, list_of(mesh, b->kept, b->kept_count), kept);
+    gather_part(b->kept_count * dim, left * dim, b->U, b->C, b->scale, kept, b->solved);
+    memset(x, 0, (size_t)(mesh->nodes * dim) * sizeof *x);
+    put_nodes(x, mesh->rim, list_of(mesh, b->kept, b->kept_count), kept);
 }
 
 // x_g -= C x_k
@@ -390,20 +412,21 @@ static void spread_part(int k, int g, const double *C, const double *kept, doubl
 
 static void spread_body(const brunt_condensed_body *b, double *x) {
     const brunt_condensed_mesh *mesh = b->mesh;
-    const int left = mesh->rim_count - b->kept_count;
-    double *inner = b->solved + mesh->rim_count * DIM, rim[SIDE], kept[SIDE];
-    take_nodes(x, mesh->rim, b->kept, b->kept_count, kept);
-    spread_part(b->kept_count * DIM, left * DIM, b->C, kept, b->solved);
-    put_nodes(x, mesh->rim, b->gone, left, b->solved);
-    take_nodes(x, NULL, mesh->rim, mesh->rim_count, rim);
-    spread_part(mesh->rim_count * DIM, mesh->inner_count * DIM, mesh->C, rim, inner);
-    put_nodes(x, NULL, mesh->inner, mesh->inner_count, inner);
+    const int dim = mesh->dim, left = mesh->rim_count - b->kept_count;
+    double *inner = b->solved + mesh->rim_count * dim, rim[SIDE], kept[SIDE];
+    take_nodes(x, mesh->rim, list_of(mesh, b->kept, b->kept_count), kept);
+    spread_part(b->kept_count * dim, left * dim, b->C, kept, b->solved);
+    put_nodes(x, mesh->rim, list_of(mesh, b->gone, left), b->solved);
+    take_nodes(x, NULL, list_of(mesh, mesh->rim, mesh->rim_count), rim);
+    spread_part(mesh->rim_count * dim, mesh->inner_count * dim, mesh->C, rim, inner);
+    put_nodes(x, NULL, list_of(mesh, mesh->inner, mesh->inner_count), inner);
 }
 
 static void run_bodies(void *context, int64_t begin, int64_t end, int worker) {
     const vector_work *w = context;
     (void)worker;
-    for (int64_t k = begin; k < end; k++) w->each(&w->c->body[k], w->x + (int64_t)w->c->body[k].base * DIM);
+    for (int64_t k = begin; k < end; k++)
+        w->each(&w->c->body[k], w->x + (int64_t)w->c->body[k].base * w->c->body[k].mesh->dim);
 }
 
 void brunt_condensation_gather(const brunt_condensation *c, const brunt_team *team, double *f) {
@@ -423,7 +446,7 @@ void brunt_condensation_clear(const brunt_condensation *c, double *x) {
         for (int i = 0; i < mesh->nodes; i++) {
             const int place = c->place[b->base + i];
             if (place >= 0 && b->is_kept[place]) continue;
-            memset(x + (b->base + i) * (int64_t)DIM, 0, (size_t)DIM * sizeof *x);
+            memset(x + (b->base + i) * (int64_t)mesh->dim, 0, (size_t)mesh->dim * sizeof *x);
         }
     }
 }

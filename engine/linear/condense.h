@@ -5,27 +5,26 @@
 // go body by body, whenever others of them are touched. Nodes that are left out stay among the unknowns, with rows of
 // the unit matrix; what other terms have on their diagonal goes to the kept ones so that a rigid motion has it all.
 // That is enough of what holds load steps near their iterates, and has no influence on where they end.
-//
-// Of two dimensions.
 #pragma once
 
 #include "linear/block_matrix.h"
 
 // A mesh: `rim` and `inner` of its nodes, ascending. Matrices are row by row, of components.
-enum { BRUNT_RIGID = 3 }; // motions
+enum { BRUNT_RIGID = 6 }; // motions at most
 
 typedef struct brunt_condensed_mesh {
+    int dim, motions; // rigid ones: 3 or 6
     int nodes, rim_count, inner_count;
     int32_t *rim, *inner;
-    double *mode; // of each component, by BRUNT_RIGID: rigid motions about the middle, the turn by the mesh's size
+    double *mode; // of each component, by `motions`: rigid ones about the middle, turns by the mesh's size
     double *K;    // of the rim, without the inner nodes
     double *U;    // factor of the inner nodes, K_ii = U^T U
     double *C;    // K_ii^-1 K_ib: a row for each inner component
 } brunt_condensed_mesh;
 
-// K: of all nodes; x: their places [m]; on_rim: those that may be touched. BRUNT_OK, or BRUNT_FAILED: out of memory, or
-// K is not that of a body whose rim holds it.
-int brunt_condensed_mesh_make(brunt_condensed_mesh *mesh, int nodes, const double *K, const double *x,
+// Of dim 2 or 3; K: of all nodes; x: their places [m]; on_rim: those that may be touched. BRUNT_OK, or BRUNT_FAILED:
+// out of memory, or K is not that of a body whose rim holds it.
+int brunt_condensed_mesh_make(brunt_condensed_mesh *mesh, int dim, int nodes, const double *K, const double *x,
                               const uint8_t *on_rim, brunt_error *error);
 void brunt_condensed_mesh_free(brunt_condensed_mesh *mesh);
 
@@ -39,7 +38,7 @@ typedef struct brunt_condensed_body {
     int kept_count;       // 0: it has not been reduced
     double *parts;        // of as many components as the rim has, squared: S, U, C
     double *S, *U, *C;    // of kept nodes, scaled; of those gone, as the mesh has them
-    double *carry;        // of each kept component, by BRUNT_RIGID: P (P^T P)^-1 of its modes P
+    double *carry;        // of each kept component, by `motions`: P (P^T P)^-1 of its modes P
     double *solved;       // K_ii^-1 f_i of the last system: of the rim, then of inner nodes
 } brunt_condensed_body;
 

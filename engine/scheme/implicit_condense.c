@@ -11,8 +11,8 @@ enum { MESHES = 8, LEAST_BODIES = 8, MOST = 1024 }; // that are looked for; that
 // Whether systems of the world may leave out nodes at all.
 static bool may_condense(const struct brunt_implicit *m) {
     const brunt_world *world = m->world;
-    return m->still && m->unknowns.dim == 2 && m->contact.barrier && !m->holds && !m->forces &&
-           m->options.solver == &brunt_linear_direct && !world->boundaries.damping.active;
+    return m->still && m->contact.barrier && !m->holds && !m->forces && m->options.solver == &brunt_linear_direct &&
+           !world->boundaries.damping.active;
 }
 
 // Nodes that contact may reach; how many.
@@ -38,7 +38,7 @@ static int find_families(struct brunt_implicit *m, family *families, int *of, do
         uint8_t on_rim[MOST];
         of[k] = -1;
         if (fem->node_count * m->unknowns.dim > MOST || !brunt_fem_hessian_stays(m->fem[k])) continue;
-        if (mark_rim(m, fem, base, on_rim) < 3) continue;
+        if (mark_rim(m, fem, base, on_rim) <= m->unknowns.dim) continue;
         brunt_fem_hessian_rest(m->fem[k], &m->team);
         for (int q = 0; q < count && of[k] < 0; q++) {
             over[k] = brunt_fem_hessian_over(m->fem[k], m->fem[families[q].first]);
@@ -52,12 +52,14 @@ static int find_families(struct brunt_implicit *m, family *families, int *of, do
 }
 
 static int make_mesh(struct brunt_implicit *m, const family *f, brunt_condensed_mesh *mesh, brunt_error *error) {
-    const size_t nodes = (size_t)m->world->bodies.fem[f->first].node_count, all = nodes * (size_t)m->unknowns.dim;
+    const int dim = m->unknowns.dim;
+    const size_t nodes = (size_t)m->world->bodies.fem[f->first].node_count, all = nodes * (size_t)dim;
     double *K, x[MOST];
     if (BRUNT_NEW(K, all * all, "the Hessian of a body", error)) return BRUNT_FAILED;
     brunt_fem_hessian_dense(m->fem[f->first], K);
-    for (size_t k = 0; k < all; k++) x[k] = (double)m->world->bodies.fem[f->first].start[k / 2 * 4 + k % 2];
-    const int status = brunt_condensed_mesh_make(mesh, (int)nodes, K, x, f->on_rim, error);
+    for (size_t k = 0; k < all; k++)
+        x[k] = (double)m->world->bodies.fem[f->first].start[k / (size_t)dim * 4 + k % (size_t)dim];
+    const int status = brunt_condensed_mesh_make(mesh, dim, (int)nodes, K, x, f->on_rim, error);
     brunt_free(K);
     return status;
 }

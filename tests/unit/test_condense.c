@@ -228,7 +228,7 @@ static void solve(int threads, brunt_condensation *c, const brunt_linear_ops *so
 static void condense(brunt_condensation *c, brunt_condensed_mesh *mesh) {
     uint8_t rim[NODES];
     for (int n = 0; n < NODES; n++) rim[n] = on_edge(n);
-    ck_assert_int_eq(brunt_condensed_mesh_make(mesh, NODES, K[0], place, rim, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_condensed_mesh_make(mesh, DIM, NODES, K[0], place, rim, NULL), BRUNT_OK);
     *c = (brunt_condensation){.count = BODIES, .body = brunt_alloc(BODIES * sizeof *c->body)};
     for (int b = 0; b < BODIES; b++)
         c->body[b] = (brunt_condensed_body){.mesh = mesh, .base = b * NODES, .scale = times[b % 3]};
@@ -262,6 +262,100 @@ START_TEST(same_as_with_all_nodes) {
 }
 END_TEST
 
+// A lattice of springs in two or three dimensions, SIDE nodes a side: what holds each node by some of its own goes, of
+// those that are left out, to the kept ones, so that each rigid motion has all of it; what they give by is as of all
+// nodes.
+enum { MOST = SIDE * SIDE * SIDE * 3 };
+
+static int make_springs(int dim, double *A, double *x, uint8_t *rim) {
+    const int nodes = dim == 2 ? SIDE * SIDE : SIDE * SIDE * SIDE, size = nodes * dim;
+    memset(A, 0, (size_t)(size * size) * sizeof *A);
+    for (int n = 0; n < nodes; n++) {
+        const int at[3] = {n % SIDE, n / SIDE % SIDE, n / SIDE / SIDE};
+        rim[n] = 0;
+        for (int i = 0; i < dim; i++) x[n * dim + i] = at[i], rim[n] |= at[i] == 0 || at[i] == SIDE - 1;
+    }
+    for (int a = 0; a < nodes; a++)
+        for (int b = 0; b < a; b++) {
+            double d[3] = {0}, square = 0;
+            for (int i = 0; i < dim; i++) d[i] = x[a * dim + i] - x[b * dim + i], square += d[i] * d[i];
+            for (int e = 0; e < dim * dim && square < 3.5; e++) {
+                const int i = e / dim, j = e % dim;
+                const double k = (1 + 0.5 * sin(a + 7 * b)) * d[i] * d[j] / square;
+                A[(a * dim + i) * size + a * dim + j] += k, A[(b * dim + i) * size + b * dim + j] += k;
+                A[(a * dim + i) * size + b * dim + j] -= k, A[(b * dim + i) * size + a * dim + j] -= k;
+            }
+        }
+    return nodes;
+}
+
+static double own(int k) { return 1 + 0.4 * sin(2 * k); }
+
+// A rigid motion, 0 .. 5, of the nodes: along x, y, z, about z, y, x.
+static void move_rigidly(int dim, int nodes, const double *x, int motion, double *u) {
+    static const int planes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    for (int k = 0; k < nodes * dim; k++) {
+        const int n = k / dim, a = k % dim;
+        if (motion < dim) {
+            u[k] = a == motion;
+            continue;
+        }
+        const int one = planes[motion - dim][0], other = planes[motion - dim][1];
+        u[k] = a == one ? -x[n * dim + other] : a == other ? x[n * dim + one] : 0;
+    }
+}
+
+START_TEST(rigid_motions_have_all_of_what_holds) {
+    static double A[MOST * MOST], x[MOST], u[MOST], f[MOST], g[MOST];
+    const brunt_team team = {.threads = 1};
+    uint8_t rim[SIDE * SIDE * SIDE];
+    const int dim = _i, nodes = make_springs(dim, A, x, rim), size = nodes * dim;
+    brunt_condensed_mesh mesh;
+    brunt_condensation c = {.count = 1, .body = brunt_alloc(sizeof *c.body)};
+    brunt_block_matrix m = {0};
+    ck_assert_int_eq(brunt_condensed_mesh_make(&mesh, dim, nodes, A, x, rim, NULL), BRUNT_OK);
+    c.body[0] = (brunt_condensed_body){.mesh = &mesh, .scale = 2};
+    ck_assert_int_eq(brunt_condensation_make(&c, nodes, 1, NULL), BRUNT_OK);
+    const int64_t first[] = {0, 2};
+    const int32_t touched[] = {1, nodes - 2};
+    brunt_stencils lists[2] = {{.count = 1, .first = first, .node = touched}};
+    int count = 1;
+    ck_assert_int_eq(brunt_condensation_touch(&c, &team, lists, &count, false, NULL), BRUNT_OK);
+    const brunt_pattern pattern = {.dim = dim, .nodes = nodes, .stencils = lists, .lists = count};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &team, &pattern, NULL), BRUNT_OK);
+    for (int k = 0; k < size; k++) brunt_block_matrix_diagonal(&m, k / dim)[k % dim * (dim + 1)] = own(k);
+    brunt_condensation_fill(&c, &team, &m);
+    for (int motion = 0; motion < dim * (dim + 1) / 2; motion++) {
+        double of_all = 0, has = 0;
+        move_rigidly(dim, nodes, x, motion, u);
+        for (int k = 0; k < size; k++) of_all += own(k) * u[k] * u[k];
+        brunt_condensation_clear(&c, u);
+        brunt_block_matrix_product(&m, &team, u, f);
+        for (int k = 0; k < size; k++) has += u[k] * f[k];
+        ck_assert_msg(fabs(has - of_all) < 1e-12 * of_all, "motion %d has %.15g of %.15g", motion, has, of_all);
+    }
+    // Forces that hold a given shape of all nodes, gathered, are those that S wants of the kept ones; spread they are
+    // that shape again.
+    double shape[MOST], worst = 0;
+    for (int k = 0; k < size; k++) shape[k] = sin(3.0 * k);
+    for (int k = 0; k < size; k++) {
+        f[k] = 0;
+        for (int j = 0; j < size; j++) f[k] += 2 * A[k * size + j] * shape[j];
+    }
+    brunt_block_matrix_zero(&m, &team);
+    brunt_condensation_fill(&c, &team, &m);
+    memcpy(u, shape, sizeof u), memcpy(g, f, sizeof g);
+    brunt_condensation_clear(&c, u);
+    brunt_condensation_gather(&c, &team, g);
+    brunt_block_matrix_product(&m, &team, u, f);
+    for (int k = 0; k < size; k++) worst = fmax(worst, u[k] != 0 ? fabs(f[k] - g[k]) : 0);
+    brunt_condensation_spread(&c, &team, u);
+    for (int k = 0; k < size; k++) worst = fmax(worst, fabs(u[k] - shape[k]));
+    ck_assert_double_lt(worst, 1e-11);
+    brunt_condensation_free(&c), brunt_condensed_mesh_free(&mesh), brunt_block_matrix_free(&m);
+}
+END_TEST
+
 // A mesh whose rim does not hold its inner nodes has no factor.
 START_TEST(loose_nodes_are_told) {
     brunt_condensed_mesh mesh;
@@ -271,7 +365,7 @@ START_TEST(loose_nodes_are_told) {
     for (int n = 0; n < NODES; n++) rim[n] = on_edge(n);
     for (int k = 0; k < SIZE; k++)
         for (int a = 0; a < DIM; a++) K[5 * DIM + a][k] = K[k][5 * DIM + a] = 0;
-    ck_assert_int_ne(brunt_condensed_mesh_make(&mesh, NODES, K[0], place, rim, &error), BRUNT_OK);
+    ck_assert_int_ne(brunt_condensed_mesh_make(&mesh, DIM, NODES, K[0], place, rim, &error), BRUNT_OK);
     ck_assert_ptr_nonnull(strstr(error.message, "not positive definite"));
 }
 END_TEST
@@ -280,6 +374,7 @@ int main(void) {
     Suite *suite = suite_create("condense");
     TCase *test = tcase_create("condense");
     tcase_add_loop_test(test, same_as_with_all_nodes, 0, 2);
+    tcase_add_loop_test(test, rigid_motions_have_all_of_what_holds, 2, 4);
     tcase_add_test(test, loose_nodes_are_told);
     suite_add_tcase(suite, test);
     return suite_main(suite);
