@@ -19,7 +19,7 @@ static void sets_free(barrier_sets *s) { brunt_free(s->first), brunt_free(s->nod
 void brunt_barrier_free(brunt_barrier *b) {
     if (!b) return;
     brunt_free(b->facet), brunt_free(b->turned), brunt_free(b->body), brunt_free(b->edge), brunt_free(b->vertex_area);
-    brunt_free(b->arc), brunt_free(b->joint), brunt_free(b->rim);
+    brunt_free(b->arc), brunt_free(b->joint), brunt_free(b->rim), brunt_free(b->corner), brunt_free(b->corner_of);
     brunt_free(b->edge_area), brunt_free(b->edge_length2), brunt_free(b->pair), brunt_free(b->key);
     brunt_free(b->point_box), brunt_free(b->facet_box), brunt_free(b->edge_box);
     brunt_free(b->far), brunt_free(b->asked);
@@ -149,8 +149,9 @@ static int make_edges(brunt_barrier *b, const double (*x)[3], brunt_error *error
 
 int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, brunt_error *error) {
     BRUNT_ASSERT(mesh->dim == 2 || mesh->dim == 3);
-    BRUNT_ASSERT(mesh->dim == 2 || !mesh->round);
+    BRUNT_ASSERT(mesh->dim == 2 || !(mesh->round || mesh->overlaps));
     b->dim = mesh->dim, b->vertex_count = mesh->vertex_count, b->edge_count = b->rim_count = 0, b->round = false;
+    b->corner_count = 0;
     const size_t vertices = (size_t)mesh->vertex_count + 1;
     if (BRUNT_CAPACITY(b->facet, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
         BRUNT_CAPACITY(b->turned, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
@@ -167,6 +168,7 @@ int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, bru
         if (code) return code;
         for (int k = 0; k < b->dim; k++) b->vertex_area[f[k]] += area / b->dim;
     }
+    if (mesh->overlaps && barrier_make_corners(b, mesh->rest, error)) return BRUNT_FAILED;
     if (mesh->round) return barrier_make_arcs(b, mesh->rest, error);
     return b->dim == 3 ? make_edges(b, mesh->rest, error) : BRUNT_OK;
 }

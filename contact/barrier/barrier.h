@@ -29,6 +29,7 @@ typedef struct brunt_barrier_mesh {
     // quadrilateral is the two triangles about its shorter diagonal in the reference configuration (the one with the
     // smallest vertex where both are as long).
     const int32_t (*facet)[4];
+    bool overlaps; // 2D, some of what meets may: corners are looked for (barrier_corner.c)
     bool round; // 2D, where all that meets may overlap: rims are curves, with points between vertices (barrier_arcs.c)
 } brunt_barrier_mesh;
 

@@ -44,6 +44,13 @@ double barrier_cone_energy(const brunt_barrier *b, const barrier_contact *c, con
     return k.weight > 0 ? k.weight * (k.less.b - k.gap.b) : 0;
 }
 
+// Within a corner weights follow both gaps.
+static void add_weight(const brunt_barrier *b, const barrier_contact *c, double more, double *gradient) {
+    const barrier_within within = barrier_within_of(b, c);
+    for (int i = 0; i < 8; i++)
+        gradient[i] += more * (within.weight[0] * c->at.w[i / 2] * c->at.n[i % 2] + within.weight[1] * within.other[i]);
+}
+
 void barrier_cone_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient) {
     const cone k = cone_at(b, c, u);
     for (int i = 0; i < c->at.places; i++)
@@ -51,6 +58,7 @@ void barrier_cone_gradient(const brunt_barrier *b, const barrier_contact *c, con
             gradient[i * b->dim + q] =
                 k.weight * c->at.w[i] *
                 ((k.less.db - k.gap.db) * c->at.n[q] - k.less.db * k.mu * k.follows * k.slip.ratio * k.slip.y[q]);
+    if (c->within && k.weight > 0) add_weight(b, c, k.less.b - k.gap.b, gradient);
 }
 
 // The force that friction has of the greatest, `part`, is an unknown of its own, as in barrier_slip.c.

@@ -43,6 +43,7 @@ static double weighted(const brunt_barrier *b, const barrier_contact *c, brunt_b
 double barrier_contact_energy(const brunt_barrier *b, const barrier_contact *c) {
     brunt_barrier_value v;
     const double weight = weighted(b, c, &v);
+    if (c->within) return barrier_within_energy(b, c, v.ddb);
     return weight == 0 ? (v.b < INFINITY ? 0 : INFINITY) : weight * v.b;
 }
 
@@ -51,14 +52,17 @@ double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c) {
     return -weighted(b, c, &v) * v.db;
 }
 
-void barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c, double *slope) {
+void barrier_contact_force_gradient(const brunt_barrier *b, const barrier_contact *c, double scale, double *gradient) {
+    const int dim = b->dim, rows = c->at.places * dim;
     brunt_barrier_value v;
-    const double weight = weighted(b, c, &v);
-    for (int i = 0; i < c->at.places; i++)
-        for (int k = 0; k < b->dim; k++) slope[i * b->dim + k] = -weight * v.ddb * c->at.w[i] * c->at.n[k];
+    double slope = -weighted(b, c, &v) * v.ddb;
+    const barrier_within within = c->within ? barrier_within_of(b, c) : (barrier_within){.slope = {0}};
+    if (c->within) slope = -v.ddb * within.slope[0];
+    for (int i = 0; i < rows; i++) gradient[i] = scale * slope * c->at.w[i / dim] * c->at.n[i % dim];
+    for (int i = 0; i < rows && c->within; i++) gradient[i] -= scale * v.ddb * within.slope[1] * within.other[i];
     if (c->threshold == 0) return;
     const mollifier m = mollifier_of(c);
-    for (int i = 0; i < 12; i++) slope[i] -= c->weight * v.db * m.dm * m.gradient[i];
+    for (int i = 0; i < 12; i++) gradient[i] -= scale * c->weight * v.db * m.dm * m.gradient[i];
 }
 
 bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step) {
@@ -104,12 +108,29 @@ static void mollified(const barrier_contact *c, const mollifier *m, brunt_barrie
         }
 }
 
+// Half of what couples both gaps of a corner: the contact with the other face has as much.
+static void add_wedge(const barrier_contact *c, const barrier_within *within, double stiffness, double *h) {
+    const double half = stiffness * within->slope[1] / 2;
+    for (int i = 0; i < 8; i++)
+        for (int j = 0; j < 8; j++) {
+            const double di = c->at.w[i / 2] * c->at.n[i % 2], dj = c->at.w[j / 2] * c->at.n[j % 2];
+            h[i * 8 + j] += half * (di * within->other[j] + within->other[i] * dj);
+        }
+}
+
 void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *h) {
     const int rows = c->at.places * b->dim;
     brunt_barrier_value v;
     const double weight = weighted(b, c, &v);
     memset(h, 0, (size_t)rows * (size_t)rows * sizeof *h);
-    brunt_closest_hessian(&c->at, b->dim, weight * v.ddb, weight * v.db, h);
+    // While surfaces that slip come apart the weight is as if it stayed: what that adds takes its own slope.
+    if (c->within && !b->from) {
+        const barrier_within within = barrier_within_of(b, c);
+        brunt_closest_hessian(&c->at, b->dim, within.slope[0] * v.ddb, weight * v.db, h);
+        add_wedge(c, &within, v.ddb, h);
+    } else {
+        brunt_closest_hessian(&c->at, b->dim, weight * v.ddb, weight * v.db, h);
+    }
     if (c->threshold > 0) {
         const mollifier m = mollifier_of(c);
         if (m.dm != 0) mollified(c, &m, v, h);

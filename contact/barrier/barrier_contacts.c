@@ -194,7 +194,8 @@ void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u,
     barrier_settle_overlaps(b, point, u, r);
     for (int64_t i = 0; i < r->feature_count; i++) {
         if (r->feature[i].times == 0) continue;
-        const barrier_contact c = barrier_contact_with(b, point, &r->feature[i], u);
+        const barrier_feature *f = &r->feature[i];
+        const barrier_contact c = (f->corner ? barrier_contact_within : barrier_contact_with)(b, point, f, u);
         take(context, &c);
     }
     plane_contacts(b, point, u, take, context);

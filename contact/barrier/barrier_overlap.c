@@ -3,8 +3,8 @@
 // From outside gaps are as those of barriers: all facets within reach count. From inside the way out is over the
 // nearest feature alone: with others that surround it, a point below a corner would be pushed twice. Where two are as
 // near but for rounding, each has its share, so that mirror images do the same. As it is with the nearest of several,
-// what leaves one facet for the next below a corner turns its force by the corner's angle; the energy goes on without a
-// step.
+// what leaves one facet for the next below a vertex turns its force by the rim's angle there; the energy goes on
+// without a step. Where that angle is more than 50 degrees, faces push as barrier_corner.c says.
 #include "contact/barrier/barrier_parts.h"
 
 static const double TIE = 1e-9; // of the reach
@@ -91,6 +91,7 @@ static double gap_of(const brunt_barrier *b, int32_t point, const barrier_featur
 }
 
 void barrier_settle_overlaps(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
+    barrier_find_corners(b, point, u, r);
     for (int64_t i = 0; i < r->feature_count; i++) {
         barrier_feature *f = &r->feature[i];
         f->gap = INFINITY;
@@ -100,7 +101,7 @@ void barrier_settle_overlaps(const brunt_barrier *b, int32_t point, const double
     }
     for (int64_t i = 0; i < r->feature_count; i++) {
         barrier_feature *f = &r->feature[i];
-        if (!f->times || !(f->gap < 0)) continue;
+        if (!f->times || f->corner || !(f->gap < 0)) continue;
         const double tie = TIE * barrier_pair_of(b, f->law)->reach;
         int nearest = 1;
         for (int64_t k = 0; k < r->feature_count && nearest; k++) {

@@ -24,13 +24,23 @@ typedef struct barrier_law {
     brunt_gap_energy *energy;
 } barrier_law;
 
+// Of a point within a corner of what may overlap: the other face, whose vertex beyond the corner is the last place.
+typedef struct barrier_wedge {
+    double size, gap, n[2], far; // [m], [m]; its normal, and the weight of that place in its gap
+    double area;                 // [m] share of the surface
+} barrier_wedge;
+
 typedef struct barrier_contact {
     int32_t place[BRUNT_CLOSEST_PLACES];
-    int32_t law;       // plane, or plane_count + pair
-    int8_t side;       // 1: the first feature is of the law's body a (a plane's points), -1: of b
-    double weight;     // [m^2] (2D [m]) share of the surface, times the multiplicity: negative in concave corners
-    double threshold;  // [m^4] |ea x eb|^2 from which two edges count in full; 0: not edges
-    double edge[2][3]; // [m] of two edges
+    int32_t law;      // plane, or plane_count + pair
+    int8_t side;      // 1: the first feature is of the law's body a (a plane's points), -1: of b
+    int8_t within;    // a corner (barrier_corner.c), whose vertex is this place; 0: none
+    double weight;    // [m^2] (2D [m]) share of the surface, times the multiplicity: negative in concave corners
+    double threshold; // [m^4] |ea x eb|^2 from which two edges count in full; 0: not edges
+    union {
+        double edge[2][3]; // [m] of two edges
+        barrier_wedge wedge;
+    };
     brunt_closest at;
     double offset;       // [m] the gap is at.d less it
     double normal_force; // [N] when friction was updated; stays 0 where there is none
@@ -75,16 +85,23 @@ typedef struct barrier_contacts {
     size_t contact_capacity;
 } barrier_contacts;
 
+// Where a rim turns outwards by a lot: the facets that end and begin there, in their body's order.
+typedef struct barrier_corner {
+    int32_t vertex, facet[2];
+    double part, sine; // of the reach, how far it goes; of half the angle between its faces
+} barrier_corner;
+
 // A feature that a point is near: vertices ascending, -1 where there are fewer.
 typedef struct barrier_feature {
     int32_t vertex[3];
     int32_t law;
     int8_t side;
     double share;
-    int32_t times; // multiplicity
-    int32_t facet; // where it is the inside of one
-    double along;  // and where on its curve, of its parameter
-    double gap;    // [m] of what may overlap; else INFINITY
+    int32_t times;                // multiplicity
+    int32_t facet;                // where it is the inside of one
+    double along;                 // and where on its curve, of its parameter
+    double gap;                   // [m] of what may overlap; else INFINITY
+    const barrier_corner *corner; // that the point is within, of which this is a face; NULL: none
 } barrier_feature;
 
 // What facets that a point is near have in common: edges (b -1: vertices), how many facets (edges) hold them.
@@ -162,6 +179,10 @@ struct brunt_barrier {
     barrier_rim *rim; // BARRIER_RIM_POINTS of each facet
     int32_t rim_count;
     size_t arc_capacity, joint_capacity, rim_capacity;
+    // Corners, where something may overlap; of facets the one where they end.
+    barrier_corner *corner;
+    int32_t *corner_of, corner_count;
+    size_t corner_capacity, corner_of_capacity;
     brunt_barrier_pair_source source;
     // Pairs that were near each other in this step, as they were found, and where each stands, by its bodies.
     brunt_barrier_pair *pair;
@@ -306,14 +327,33 @@ double barrier_overlap_limit(double gap, double reach, double way, double larges
 // Whether a gap is so far below 0 that it is not known which way is out.
 static inline bool barrier_is_lost(const barrier_law *law, double gap) { return law->reach > 0 && gap < -law->reach; }
 
+// --- corners of those (barrier_corner.c)
+// Finds the corners of the mesh, whose vertices are at x. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int barrier_make_corners(brunt_barrier *b, const double (*x)[3], brunt_error *error);
+// The vertex of a corner's second face that its first has not.
+int32_t barrier_beyond_corner(const brunt_barrier *b, const barrier_corner *corner);
+// Where a point is within a corner both faces of that come to its features, in the place of what there is of them.
+void barrier_find_corners(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r);
+// The contact with such a face.
+barrier_contact barrier_contact_within(const brunt_barrier *b, int32_t point, const barrier_feature *f,
+                                       const double *u);
+// Of a contact within a corner, by its own gap and by that of the other face: of its weight [m], and of what it is
+// pushed by over the stiffness of the law [m]; the gradient of the other gap by its places.
+typedef struct barrier_within {
+    double weight[2], slope[2], other[8];
+} barrier_within;
+barrier_within barrier_within_of(const brunt_barrier *b, const barrier_contact *c);
+// [J] Half of what both faces store; stiffness [Pa/m].
+double barrier_within_energy(const brunt_barrier *b, const barrier_contact *c, double stiffness);
+
 // --- one contact (barrier_contact.c)
 double barrier_contact_energy(const brunt_barrier *b, const barrier_contact *c);
 void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, double *gradient);
 void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *hessian);
 // [N] with which the features push each other apart; of contacts of negative weight negative.
 double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c);
-// [N/m] Its slope by the components of its places.
-void barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c, double *slope);
+// [N/m] Its gradient by places, `scale` times.
+void barrier_contact_force_gradient(const brunt_barrier *b, const barrier_contact *c, double scale, double *gradient);
 // Whether a contact that pushes is stiffer for what it moves than `step` [s] follows: then `step` is what does.
 bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step);
 

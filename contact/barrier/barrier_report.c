@@ -24,11 +24,17 @@ static void note_stiffness(const brunt_barrier *b, const double *u, const barrie
     take_position(b, u, c, s->position);
 }
 
+// Within a corner that of the nearer face.
+static double gap_of(const barrier_contact *c) {
+    const double gap = c->at.d - c->offset;
+    return c->within ? fmax(gap, c->wedge.gap) : gap;
+}
+
 static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
-    if (c->weight <= 0 || !(c->at.d - c->offset < r->least_gap)) return;
+    if (c->weight <= 0 || !(gap_of(c) < r->least_gap)) return;
     const bool plane = barrier_law_is_plane(b, c->law), edges = c->threshold > 0;
     const barrier_law law = barrier_law_of(b, c->law);
-    r->least_gap = c->at.d - c->offset;
+    r->least_gap = gap_of(c);
     r->least_part = law.reach > 0 ? 1 + (r->least_gap - law.distance) / law.reach : r->least_gap / law.distance;
     r->overlaps = law.reach > 0;
     r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law : -1;
@@ -40,8 +46,7 @@ static void note_gap(const brunt_barrier *b, const double *u, const barrier_cont
 double brunt_barrier_least_gap(const brunt_barrier *b) {
     double least = INFINITY;
     for (int64_t i = 0; i < b->contacts.count; i++)
-        if (b->contacts.contact[i].weight > 0)
-            least = fmin(least, b->contacts.contact[i].at.d - b->contacts.contact[i].offset);
+        if (b->contacts.contact[i].weight > 0) least = fmin(least, gap_of(&b->contacts.contact[i]));
     return least;
 }
 

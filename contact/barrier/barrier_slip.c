@@ -134,11 +134,11 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
     const barrier_slip s = barrier_slip_at(b, c, u);
     const double *n = c->at.n, greatest = greatest_force(b, c),
                  mu = c->normal_force > 0 ? greatest / c->normal_force : 0;
-    double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], slip[3], slope[BARRIER_DOFS];
+    double dF[BARRIER_DOFS], turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], slip[3];
     const int first = c->threshold > 0 ? 2 : 1; // places of the first feature
     const double apart = -barrier_approach(b, c, u), share = share_of(b, c, u);
     brunt_closest_hessian(&c->at, dim, 0, 1, turn);
-    barrier_contact_force_slope(b, c, slope);
+    barrier_contact_force_gradient(b, c, mu, dF);
     for (int i = 0; i < places; i++) barrier_move(b, c->place[i], u, move[i]);
     barrier_slip_of(b, c, u, slip);
     const double *kept = b->rub[c - b->lagged.contact].kept, turns = b->rub[c - b->lagged.contact].turned,
@@ -166,10 +166,9 @@ void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, cons
                 dy[k] = share * dy[k] - (share * (across * n[k] + apart * dn[k]) + normal * n[k]) + more * slip[k] -
                         turns * (dn[k] - of_kept * kept[k]);
             for (int k = 0; k < dim; k++) along += s.y[k] * dy[k];
-            const double dF = mu * slope[column];
             for (int k = 0; k < dim; k++) {
                 const double f = greatest * s.ratio * s.y[k],
-                             df = dF * part[k] + greatest * s.ratio * (dy[k] - bend * along * part[k]);
+                             df = dF[column] * part[k] + greatest * s.ratio * (dy[k] - bend * along * part[k]);
                 for (int i = 0; i < places; i++) tangent[(i * dim + k) * rows + column] = c->at.w[i] * df + dw[i] * f;
             }
         }

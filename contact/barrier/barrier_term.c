@@ -35,11 +35,20 @@ static int list_at(brunt_barrier *b, const brunt_team *team, const double *u, br
     return BRUNT_OK;
 }
 
+// The point within a corner that ends the facet: what the faces couple.
+static void list_corner(barrier_contacts *list, const brunt_barrier *b, int32_t point, int32_t facet) {
+    if (!b->corner_count || b->corner_of[facet] < 0) return;
+    const barrier_corner *corner = &b->corner[b->corner_of[facet]];
+    const int32_t *f = b->facet[facet];
+    list->contact[list->count++] =
+        (barrier_contact){.place = {point, f[0], f[1], barrier_beyond_corner(b, corner)}, .at.places = 4};
+}
+
 // All pairs that are near, as if they touched: what may couple on the way.
 static int list_candidates(brunt_barrier *b, brunt_error *error) {
     barrier_contacts *list = &b->contacts;
-    const int64_t most =
-        b->facets.first[b->facets.count] + b->planes.first[b->planes.count] + b->edges.first[b->edges.count];
+    const int64_t most = b->facets.first[b->facets.count] * (b->corner_count ? 2 : 1) +
+                         b->planes.first[b->planes.count] + b->edges.first[b->edges.count];
     if (BRUNT_CAPACITY(list->contact, (size_t)most + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     list->count = 0, b->here_count = 0;
     for (int32_t i = 0; i < b->facets.count; i++) {
@@ -48,6 +57,7 @@ static int list_candidates(brunt_barrier *b, brunt_error *error) {
             const barrier_arc *arc = barrier_arc_of(b, b->facets.item[k]);
             barrier_contact *c = &list->contact[list->count++];
             *c = (barrier_contact){.place = {i, f[0], f[1], f[2]}, .at.places = 1 + b->dim};
+            list_corner(list, b, i, b->facets.item[k]);
             if (!arc) continue;
             c->at.places = 1 + arc->curve.places;
             memcpy(c->place + 1, arc->place, sizeof arc->place);

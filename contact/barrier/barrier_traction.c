@@ -97,6 +97,13 @@ static void add_to_vertices(tellers *t, int32_t place, int32_t other, int32_t pl
     }
 }
 
+// The part of a contact's force that place k has. Within a corner the place where a face is pushed may lie beyond its
+// end: it is told at that.
+static double part_of(const barrier_contact *c, int k) {
+    const double w = k == 0 ? c->at.w[k] : -c->at.w[k];
+    return c->within ? fmin(fmax(w, 0), 1) : w;
+}
+
 // Normal forces, or those of friction: to the vertices on both sides, by their weights. Along each rim friction has the
 // same sign, as both go by their own body to the left: a quarter turn from where it looks, which is -n of the first.
 static void add_contacts(tellers *t, const barrier_contacts *list, bool friction) {
@@ -109,15 +116,14 @@ static void add_contacts(tellers *t, const barrier_contacts *list, bool friction
         force = friction ? f[0] * c->at.n[1] - f[1] * c->at.n[0] : barrier_contact_force(b, c);
         for (int k = 0; k < c->at.places; k++) {
             const int32_t other = plane ? BRUNT_NONE : barrier_body_of(b, c->place[k == 0 ? 1 : 0]);
-            const double part = (k == 0 ? c->at.w[k] : -c->at.w[k]) * force;
-            add_to_vertices(t, c->place[k], other, plane ? c->law : BRUNT_NONE, part, friction);
+            add_to_vertices(t, c->place[k], other, plane ? c->law : BRUNT_NONE, part_of(c, k) * force, friction);
         }
     }
 }
 
 static int tell(tellers *t, brunt_error *error) {
     const brunt_barrier *b = t->rims.b;
-    const size_t places = b->round ? 2 * BRUNT_CUBIC_PLACES : 3; // vertices of a contact, at most
+    const size_t places = b->round ? 2 * BRUNT_CUBIC_PLACES : b->corner_count ? 4 : 3; // vertices of a contact, at most
     const size_t most = (size_t)(b->contacts.count + b->lagged.count) * places + 1, n = (size_t)b->vertex_count + 1;
     if (make_rims(&t->rims, error) || BRUNT_NEW(t->last, n, "tractions", error) ||
         BRUNT_NEW(t->before, most, "tractions", error) || BRUNT_CAPACITY(t->to->traction, most, 0, "tractions", error))

@@ -276,6 +276,7 @@ static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, bo
                                      .rest = (const double(*)[3])c->rest,
                                      .body = c->body,
                                      .facet = (const int32_t(*)[4])c->facet,
+                                     .overlaps = c->reach > 0,
                                      .round = round};
     return brunt_barrier_set_mesh(c->barrier, &mesh, error);
 }

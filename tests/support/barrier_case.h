@@ -166,8 +166,14 @@ static inline bool case_meet(const void *self, int32_t a, int32_t b, brunt_barri
 
 // Ready for terms.
 static inline void case_ready(barrier_case *c) {
-    const brunt_barrier_mesh mesh = {
-        c->dim, c->vertices, c->facets, (const double(*)[3])c->x, c->body, (const int32_t(*)[4])c->facet, c->round};
+    brunt_barrier_mesh mesh = {.dim = c->dim,
+                               .vertex_count = c->vertices,
+                               .facet_count = c->facets,
+                               .rest = (const double(*)[3])c->x,
+                               .body = c->body,
+                               .facet = (const int32_t(*)[4])c->facet,
+                               .round = c->round};
+    for (int32_t i = 0; i < c->pairs; i++) mesh.overlaps |= c->pair[i].reach > 0;
     brunt_error error = {0};
     c->barrier = brunt_barrier_make(&error);
     ck_assert_msg(brunt_barrier_set_mesh(c->barrier, &mesh, &error) == BRUNT_OK, "%s", error.message);

@@ -649,7 +649,7 @@ START_TEST(bad_surfaces_are_refused) {
     for (int i = 0; i < 3; i++) {
         brunt_error error = {0};
         brunt_barrier *b = brunt_barrier_make(&error);
-        const brunt_barrier_mesh mesh = {3, 4, 1, x, bodies, &facets[i], false};
+        const brunt_barrier_mesh mesh = {3, 4, 1, x, bodies, &facets[i], false, false};
         ck_assert_int_eq(brunt_barrier_set_mesh(b, &mesh, &error), BRUNT_FAILED);
         ck_assert_msg(strstr(error.message, says[i]), "%s", error.message);
         brunt_barrier_free(b);
