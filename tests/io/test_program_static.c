@@ -201,6 +201,22 @@ START_TEST(wedge_slides_below_its_slope_alone) {
 }
 END_TEST
 
+// Penalties, by which a corner of one lies within the other's slope, hold it above the slope as barriers do: the wall
+// has nothing to bear. Where friction that follows what presses leads nowhere it is not tried again until less is left:
+// 36 iterations a load step at most, not hundreds.
+START_TEST(wedge_stays_on_penalties) {
+    double wall[ROWS], iterations[ROWS];
+    small_put("wedges.yaml", wedges);
+    small_expect("run wedges.yaml -t 1 -q -o sticks --set contact.method=penalty", 0, NULL);
+    const int rows = read_column("sticks", "wall.wall.force_x", wall);
+    read_column("sticks", "newton.iterations", iterations);
+    for (int r = 0; r < rows; r++) {
+        ck_assert_double_eq(wall[r], 0);
+        ck_assert_double_lt(iterations[r], 100);
+    }
+}
+END_TEST
+
 // Without the wall it has no equilibrium: that is said, and nothing of it is kept.
 START_TEST(what_slides_away_is_70) {
     small_put("wedges.yaml", wedges);
@@ -312,6 +328,7 @@ int main(void) {
     tcase_add_loop_test(tests, friction_is_kept_over_a_restart, 0, 4);
     tcase_add_loop_test(tests, tractions_are_told_along_rims, 0, 2);
     tcase_add_test(tests, wedge_slides_below_its_slope_alone);
+    tcase_add_test(tests, wedge_stays_on_penalties);
     tcase_add_test(tests, what_slides_away_is_70);
     tcase_add_test(tests, loose_bodies_balance);
     tcase_add_test(tests, corners_do_not_hold_what_slides);
