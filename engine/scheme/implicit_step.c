@@ -141,20 +141,29 @@ static int free_way(const struct brunt_implicit *m, double *way, brunt_error *er
     return way_left(m) == 0 ? BRUNT_OK : free_part(m, way, error);
 }
 
-// Towards field.gradient, of which `part` can be gone at once, as near as nothing is lost inside of another: what
-// slides far along a surface is looked for anew on its way.
+static double energy_of(const struct brunt_implicit *m, const double *u) {
+    double sum = 0;
+    for (int t = 0; t < m->term_count; t++) sum += m->term[t].ops->energy(m->term[t].self, &m->team, u).value;
+    return sum;
+}
+
+// Towards field.gradient, of which `part` can be gone at once, as near as nothing is lost inside of another, and as it
+// leads down: what slides far along a surface is looked for anew on its way, and what was apart, so that nothing joined
+// it, flies into what is there.
 static int go_in_parts(struct brunt_implicit *m, double part, brunt_error *error) {
     enum { PARTS = 16 };
     const brunt_fields *f = &m->field;
-    const brunt_term *contact = &m->term[m->body_terms];
     const int64_t count = brunt_implicit_components(m);
+    double least = energy_of(m, f->u);
     for (int i = 0; i < PARTS; i++) {
         memcpy(f->pull, f->u, (size_t)count * sizeof *f->u);
         for (int64_t k = 0; k < count; k++) f->u[k] += part * f->step[k];
-        if (!isfinite(contact->ops->energy(contact->self, &m->team, f->u).value)) {
+        const double energy = energy_of(m, f->u);
+        if (!(energy <= least)) {
             memcpy(f->u, f->pull, (size_t)count * sizeof *f->u);
             break;
         }
+        least = energy;
         if (part == 1) break;
         for (int64_t k = 0; k < count; k++) f->step[k] = f->gradient[k] - f->u[k];
         if (free_part(m, &part, error)) return BRUNT_FAILED;
@@ -186,12 +195,6 @@ static int lead(struct brunt_implicit *m, bool joined, brunt_error *error) {
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
         f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : f->step[k];
     return BRUNT_OK;
-}
-
-static double energy_of(const struct brunt_implicit *m, const double *u) {
-    double sum = 0;
-    for (int t = 0; t < m->term_count; t++) sum += m->term[t].ops->energy(m->term[t].self, &m->team, u).value;
-    return sum;
 }
 
 // Square of the length of the gradient, of what is free; by the room of `pull`, which is not under way.

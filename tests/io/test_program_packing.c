@@ -126,6 +126,27 @@ START_TEST(round_rims_settle_soon) {
 }
 END_TEST
 
+// Disks that begin apart, so that nothing joins them: where the loads take them counts as far as it leads down.
+START_TEST(what_begins_apart_flies_into_nothing) {
+    static const double mu[] = {0.1, 0.5};
+    double iterations[ROWS];
+    char words[800];
+    small_put("square.yaml", square);
+    for (size_t k = 0; k < sizeof mu / sizeof *mu; k++) {
+        snprintf(words, sizeof words,
+                 "run square.yaml -t 1 -q -o out --fresh --set bodies.grains.size=0.6e-3 --set bodies.top.size=20e-3 "
+                 "--set bodies.right.size=20e-3 --set 'contact={method: penalty, surface: arcs, friction: %g, pairs: "
+                 "[{between: [grains, top], friction: 0}, {between: [grains, right], friction: 0}, {between: [top, "
+                 "right], method: none}]}' --set 'newton={tolerance: 1e-10, iterations: 60, cut: 0}'",
+                 mu[k]);
+        small_expect(words, 0, NULL);
+        double sum = 0;
+        for (int i = read_column("out", "newton.iterations", iterations) - 1; i > 0; i--) sum += iterations[i];
+        ck_assert_double_le(sum, 24); // 36 and 29 where they fly on
+    }
+}
+END_TEST
+
 // A hundred times the load: where joined disks would go by it is inside of each other, and they begin where none is.
 START_TEST(joined_disks_stay_outside) {
     static const char words[] =
@@ -448,6 +469,7 @@ int main(void) {
     tcase_add_test(tests, links_are_told);
     tcase_add_test(tests, hexagonal_packings_settle);
     tcase_add_test(tests, round_rims_settle_soon);
+    tcase_add_test(tests, what_begins_apart_flies_into_nothing);
     tcase_add_test(tests, hard_packings_settle_or_say_why);
     tcase_add_test(tests, hard_hexagons_settle);
     tcase_add_test(tests, what_touches_nothing);
