@@ -1,8 +1,7 @@
 // Friction of load steps, as a user meets it: Coulomb's law, what surfaces have given is kept from step to step and
 // over a restart, and what has no equilibrium is said with body and exit code 70.
 #include "tests/support/small_columns.h"
-
-#include <jansson.h>
+#include "tests/support/small_hash.h"
 
 #ifndef BRUNT_FLOAT
 static const char block[] =
@@ -56,15 +55,6 @@ START_TEST(friction_is_kept_from_step_to_step) {
     ck_assert_double_eq_tol(heat[20] - heat[19], 0.3 * fy[20] * 0.025e-3, 2e-3 * (heat[20] - heat[19]));
 }
 END_TEST
-
-static uint64_t hash_of(const char *folder) {
-    char path[200];
-    snprintf(path, sizeof path, "%s/%s/summary.json", small_folder, folder);
-    json_t *summary = json_load_file(path, 0, NULL);
-    const uint64_t hash = strtoull(json_string_value(json_object_get(summary, "state_hash")), NULL, 16);
-    json_decref(summary);
-    return hash;
-}
 
 // While it sticks with a force that an earlier step has left.
 START_TEST(friction_is_kept_over_a_restart) {
