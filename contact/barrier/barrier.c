@@ -24,6 +24,7 @@ void brunt_barrier_free(brunt_barrier *b) {
     brunt_free(b->point_box), brunt_free(b->facet_box), brunt_free(b->edge_box);
     brunt_free(b->far), brunt_free(b->asked);
     brunt_near_cells_free(&b->facet_cells), brunt_near_cells_free(&b->edge_cells);
+    barrier_wide_free(&b->wide), barrier_clear_free(&b->clear);
     brunt_near_list_free(&b->facets), brunt_near_list_free(&b->planes), brunt_near_list_free(&b->edges);
     brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first), brunt_free(b->task_place);
     for (size_t i = 0; i < b->workspace_capacity / sizeof *b->workspace; i++) {
@@ -151,7 +152,7 @@ int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, bru
     BRUNT_ASSERT(mesh->dim == 2 || mesh->dim == 3);
     BRUNT_ASSERT(mesh->dim == 2 || !(mesh->round || mesh->overlaps));
     b->dim = mesh->dim, b->vertex_count = mesh->vertex_count, b->edge_count = b->rim_count = 0, b->round = false;
-    b->corner_count = 0;
+    b->corner_count = 0, b->overlaps = mesh->overlaps;
     const size_t vertices = (size_t)mesh->vertex_count + 1;
     if (BRUNT_CAPACITY(b->facet, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
         BRUNT_CAPACITY(b->turned, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
@@ -169,7 +170,8 @@ int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, bru
         for (int k = 0; k < b->dim; k++) b->vertex_area[f[k]] += area / b->dim;
     }
     if (mesh->overlaps && barrier_make_corners(b, mesh->rest, error)) return BRUNT_FAILED;
-    if (mesh->round) return barrier_make_arcs(b, mesh->rest, error);
+    if (mesh->round && barrier_make_arcs(b, mesh->rest, error)) return BRUNT_FAILED;
+    if (mesh->overlaps) barrier_clear_begin(b);
     return b->dim == 3 ? make_edges(b, mesh->rest, error) : BRUNT_OK;
 }
 
@@ -178,10 +180,10 @@ int brunt_barrier_set_step(brunt_barrier *b, const brunt_barrier_step *step, bru
     BRUNT_ASSERT(step->before || step->factor == 1);
     (void)error;
     b->step = *step;
-    b->extent.known = b->known = false;
+    b->extent.known = b->known = b->wide.known = false;
     barrier_place_rims(b);
     b->contacts.count = b->lagged.count = 0;
     b->pair_count = b->key_count = 0;
-    b->here_count = 0;
+    b->here_count = b->clear.count = 0;
     return BRUNT_OK;
 }

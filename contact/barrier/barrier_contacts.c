@@ -63,6 +63,7 @@ static int region_of(const brunt_barrier *b, int32_t point, const barrier_featur
 // The facets within reach, each at its nearest feature.
 static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
     r->feature_count = r->edge_count = r->vertex_count = 0;
+    r->clear_of = BRUNT_NONE;
     const int32_t body = barrier_body_of(b, point);
     int32_t other = BRUNT_NONE;
     bool clear = false; // of the other body
@@ -71,12 +72,12 @@ static void count_facets(const brunt_barrier *b, int32_t point, const double *u,
         barrier_feature of = {.facet = b->facets.item[i]};
         double d;
         int32_t v[3];
-        of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
         if (b->body[f[0]] != other) {
             other = b->body[f[0]];
-            clear = barrier_is_clear_of(b, point, other, barrier_pair_of(b, of.law), u);
+            clear = b->overlaps && barrier_is_clear_of(b, point, other, u, r);
         }
         if (clear) continue;
+        of.law = barrier_law_between(b, body, other, &of.side);
         const int region = region_of(b, point, &of, u, &of.along, &d);
         if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);
@@ -221,6 +222,7 @@ static void find_contacts(void *context, int64_t begin, int64_t end, int worker)
         w->b->task_place[i] = (barrier_found){r->contact_count, worker};
         barrier_each_contact(w->b, i, w->u, worker, take_contact, r);
         w->b->task_first[i + 1] = r->contact_count - w->b->task_place[i].at;
+        if (w->b->overlaps && w->b->task[i] >= 0) barrier_clear_note(w->b, w->b->task[i], r);
     }
 }
 
@@ -235,10 +237,19 @@ static void place_contacts(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
+// What all threads know of points that are clear of bodies.
+static int begin_pass(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
+    if (b->overlaps && barrier_clear_reserve(b, error)) return BRUNT_FAILED;
+    const double lost = b->overlaps ? barrier_clear_lost(b, u) : INFINITY;
+    for (int t = 0; t < team->threads; t++) b->workspace[t].lost = lost;
+    return BRUNT_OK;
+}
+
 int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list,
                           brunt_error *error) {
     contacts_work work = {.b = b, .u = u};
     list->count = 0;
+    if (begin_pass(b, team, u, error)) return BRUNT_FAILED;
     for (int t = 0; t < team->threads; t++) b->workspace[t].contact_count = 0, b->workspace[t].error.code = BRUNT_OK;
     brunt_parallel(team->threads, b->task_count, BARRIER_TASK_GRAIN, find_contacts, &work, team->timer);
     for (int t = 0; t < team->threads; t++)
@@ -275,6 +286,7 @@ static void energy_task(void *context, int64_t begin, int64_t end, int worker) {
 brunt_energy_sum barrier_sum_energy(brunt_barrier *b, const brunt_team *team, const double *u) {
     contacts_work work = {.b = b, .u = u};
     brunt_energy_sum sum = {0};
+    if (begin_pass(b, team, u, &b->unsaid)) return sum;
     brunt_parallel(team->threads, b->task_count, BARRIER_TASK_GRAIN, energy_task, &work, team->timer);
     for (int64_t i = 0; i < b->task_count; i++)
         sum.value += b->task_energy[i][0], sum.magnitude += b->task_energy[i][1];

@@ -26,7 +26,10 @@ static double touch_of(const brunt_barrier *b) {
     return b->facet_count ? BETWEEN * bend + ROUNDING * shortest : 0;
 }
 
-void brunt_barrier_join(brunt_barrier *b, bool joined) { b->touch = joined ? touch_of(b) : 0; }
+void brunt_barrier_join(brunt_barrier *b, bool joined) {
+    b->touch = joined ? touch_of(b) : 0;
+    b->here_count = 0;
+}
 
 // [N/m] Of the gap: that below the distance, on both sides of it.
 static double stiffness_of(const brunt_barrier *b, const barrier_contact *c, double *gap) {

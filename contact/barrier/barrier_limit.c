@@ -24,6 +24,7 @@ typedef struct limit_work {
     const brunt_barrier *b;
     const double *u, *p;
     double largest;
+    double way;    // [m] p takes no point farther along what it may overlap; INFINITY: it is not known
     double *least; // of each worker
 } limit_work;
 
@@ -147,13 +148,21 @@ static double arc_limit(const limit_work *w, int32_t point, const barrier_arc *a
     return barrier_overlap_limit(d - pair->offset, pair->reach, way, largest);
 }
 
+// Whether no gap may bound the step of a pair: as barrier_overlap_limit.
+static bool is_free(const limit_work *w, int32_t law, double largest) {
+    return barrier_overlap_limit(0, barrier_pair_of(w->b, law)->reach, w->way, largest) >= largest;
+}
+
 static double point_limit(const limit_work *w, int32_t point, double largest) {
     const brunt_barrier *b = w->b;
+    const int32_t body = barrier_body_of(b, point);
+    int32_t other = BRUNT_NONE, law = BRUNT_NONE;
     int8_t side;
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]], place[4] = {point, f[0], f[1], f[2]};
-        const int32_t law = barrier_law_between(b, barrier_body_of(b, point), b->body[f[0]], &side);
         const barrier_arc *arc = barrier_arc_of(b, b->facets.item[i]);
+        if (b->body[f[0]] != other) other = b->body[f[0]], law = barrier_law_between(b, body, other, &side);
+        if (is_free(w, law, largest)) continue;
         if (arc) {
             largest = arc_limit(w, point, arc, barrier_pair_of(b, law), largest);
             continue;
@@ -192,7 +201,7 @@ static void limit_task(void *context, int64_t begin, int64_t end, int worker) {
 // The least of all, whichever thread has it: what one has found only spares the others' work.
 double barrier_limit(const brunt_barrier *b, const brunt_team *team, const double *u, const double *p, double largest) {
     double least[BRUNT_THREAD_LIMIT], all = largest;
-    limit_work work = {b, u, p, largest, least};
+    limit_work work = {b, u, p, largest, b->overlaps ? barrier_clear_way(b, p) : INFINITY, least};
     for (int i = 0; i < BRUNT_THREAD_LIMIT; i++) least[i] = largest;
     brunt_parallel(team->threads, b->task_count, BARRIER_TASK_GRAIN, limit_task, &work, team->timer);
     for (int i = 0; i < BRUNT_THREAD_LIMIT; i++) all = fmin(all, least[i]);

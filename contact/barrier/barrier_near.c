@@ -104,6 +104,11 @@ static int64_t facets_of(const void *context, int32_t point, int32_t *out) {
     return brunt_near_find(&b->facet_cells, &b->point_box[point], facet_wanted, context, point, out);
 }
 
+static int64_t facets_among(const void *context, int32_t point, int32_t *out) {
+    const brunt_barrier *b = ((const barrier_way *)context)->b;
+    return brunt_near_among(&b->wide.facets, b->facet_box, b->dim, &b->point_box[point], point, out);
+}
+
 static bool edge_wanted(const void *context, int32_t edge, int32_t other) {
     const brunt_barrier *b = ((const barrier_way *)context)->b;
     const int32_t *e = b->edge[edge], *f = b->edge[other];
@@ -116,6 +121,13 @@ static int64_t edges_of(const void *context, int32_t edge, int32_t *out) {
     brunt_near_box box; // without what the boxes of the others have already
     hull_box(b->point_box, b->edge[edge], 2, 0, &box);
     return brunt_near_find(&b->edge_cells, &box, edge_wanted, context, edge, out);
+}
+
+static int64_t edges_among(const void *context, int32_t edge, int32_t *out) {
+    const brunt_barrier *b = ((const barrier_way *)context)->b;
+    brunt_near_box box;
+    hull_box(b->point_box, b->edge[edge], 2, 0, &box);
+    return brunt_near_among(&b->wide.edges, b->edge_box, b->dim, &box, edge, out);
 }
 
 // Whether a point may come near to a plane: the nearest corner of its box, and how far the plane comes towards it.
@@ -211,6 +223,8 @@ static int make_boxes(barrier_way *w, const brunt_team *team, brunt_error *error
     w->margin = ROUNDING * fmax(size_of_vertices(b), barrier_take_reach(w, team));
     brunt_parallel(team->threads, b->facet_count, BARRIER_GRAIN, facet_boxes, w, team->timer);
     brunt_parallel(team->threads, b->edge_count, BARRIER_GRAIN, edge_boxes, w, team->timer);
+    if (b->step.particles.count == 0)
+        return barrier_wide_holds(b) || !barrier_wide_make(b, team, error) ? BRUNT_OK : BRUNT_FAILED;
     if (brunt_near_cells_make(&b->facet_cells, team, b->facet_box, b->facet_count, b->dim, error) ||
         brunt_near_cells_make(&b->edge_cells, team, b->edge_box, b->edge_count, b->dim, error))
         return BRUNT_FAILED;
@@ -218,14 +232,27 @@ static int make_boxes(barrier_way *w, const brunt_team *team, brunt_error *error
     return check_boxes(w, error);
 }
 
+// What is near with room to spare, unless it is known.
+static int make_wide_lists(barrier_way *w, const brunt_team *team, brunt_error *error) {
+    brunt_barrier *b = w->b;
+    const brunt_near_queries facets = {.count = barrier_points(b), .find = facets_of, .context = w},
+                             edges = {.count = b->edge_count, .find = edges_of, .context = w};
+    if (b->wide.known) return BRUNT_OK;
+    b->wide.known = !brunt_near_list_make(&b->wide.facets, team, &facets, error) &&
+                    !brunt_near_list_make(&b->wide.edges, team, &edges, error);
+    return b->wide.known ? BRUNT_OK : BRUNT_FAILED;
+}
+
 static int make_lists(barrier_way *w, const brunt_team *team, brunt_error *error) {
     brunt_barrier *b = w->b;
+    const bool wide = b->step.particles.count == 0;
     list_asked(b);
+    if (wide && make_wide_lists(w, team, error)) return BRUNT_FAILED;
     const int32_t points = barrier_points(b), at_facets = b->facet_count ? b->asked_count : 0,
                   at_planes = b->step.plane_count ? b->asked_count : 0;
-    const brunt_near_queries facets = {points, b->asked, at_facets, facets_of, w},
+    const brunt_near_queries facets = {points, b->asked, at_facets, wide ? facets_among : facets_of, w},
                              planes = {points, b->asked, at_planes, planes_of, w},
-                             edges = {.count = b->edge_count, .find = edges_of, .context = w};
+                             edges = {.count = b->edge_count, .find = wide ? edges_among : edges_of, .context = w};
     return brunt_near_list_make(&b->facets, team, &facets, error) ||
                    brunt_near_list_make(&b->planes, team, &planes, error) ||
                    brunt_near_list_make(&b->edges, team, &edges, error)

@@ -70,18 +70,18 @@ static chord nearest_chord(const brunt_barrier *b, int32_t point, int32_t body, 
     return c;
 }
 
-bool barrier_is_clear_of(const brunt_barrier *b, int32_t point, int32_t body, const brunt_barrier_pair *pair,
+double barrier_clearance(const brunt_barrier *b, int32_t point, int32_t body, const brunt_barrier_pair *pair,
                          const double *u) {
     static const double MORE = 1 + 1e-9; // rounding
-    if (!(pair->reach > 0)) return false;
     const chord c = nearest_chord(b, point, body, u);
+    const double by = c.d - MORE * (pair->distance + b->touch + pair->offset + 2 * c.bend);
     double n[3] = {0};
-    if (!(c.d > MORE * (pair->distance + b->touch + pair->offset + 2 * c.bend)) || c.facet < 0) return false;
+    if (!(by > 0) || c.facet < 0) return 0;
     if (c.ends == (BRUNT_AT_A | BRUNT_AT_B))
         outward(b, c.facet, u, n);
     else
         outward_at(b, point, b->facet[c.facet][c.ends == BRUNT_AT_B], u, n);
-    return dot(n, c.from) < 0;
+    return dot(n, c.from) < 0 ? by : 0;
 }
 
 // The gap of feature i at u, by its offset.

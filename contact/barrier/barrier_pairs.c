@@ -21,7 +21,7 @@ static int by_bodies(const void *left, const void *right) {
 void brunt_barrier_set_pairs(brunt_barrier *b, const brunt_barrier_pair_source *source) {
     b->source = *source;
     b->pair_count = b->key_count = 0;
-    b->here_count = 0;
+    b->here_count = b->clear.count = 0;
 }
 
 const brunt_barrier_pair *brunt_barrier_pairs(const brunt_barrier *b, int32_t *count) {

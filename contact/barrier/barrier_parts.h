@@ -119,6 +119,8 @@ typedef struct barrier_workspace {
     int64_t feature_count, edge_count, vertex_count;
     barrier_contact *contact; // that it has found
     int64_t contact_count;
+    int32_t clear_of;      // the first body that the point is clear of, and by how much [m]
+    double clear_by, lost; // [m] what clearances have lessened by; INFINITY: none are known
     size_t feature_capacity, edge_capacity, vertex_capacity, contact_capacity;
     brunt_error error;
 } barrier_workspace;
@@ -163,6 +165,27 @@ typedef struct barrier_extent {
     int32_t low, high; // the block nodes that move them are among low .. high - 1
 } barrier_extent;
 
+// What is near with room to spare, for as long as boxes stay about where they were then (barrier_wide.c).
+typedef struct barrier_wide {
+    bool known;                           // it is of this step
+    double spare;                         // [m] that boxes of facets and edges are larger by than they were
+    brunt_near_box *point, *facet, *edge; // as they were; the larger ones
+    brunt_near_list facets, edges;        // of points, edges
+    size_t point_capacity, facet_capacity, edge_capacity;
+} barrier_wide;
+
+// How far points are outside bodies that they may overlap, beyond what they push each other from, where contacts were
+// listed last (barrier_clear.c).
+typedef struct barrier_clear {
+    double *at; // [m] the first `count` unknowns there; 0: it is not known
+    int64_t count;
+    int32_t *body; // of points: the first that it was clear of; BRUNT_NONE: it was of none
+    double *by;    // [m]
+    double touch;  // [m] of the barrier then
+    double spread; // what those lessen by at most, over the greatest displacement of a node
+    size_t at_capacity, body_capacity, by_capacity;
+} barrier_clear;
+
 struct brunt_barrier {
     int dim;
     // Surface. Facets are simplices, vertices of each ascending (2D: the third -1).
@@ -179,6 +202,7 @@ struct brunt_barrier {
     barrier_rim *rim; // BARRIER_RIM_POINTS of each facet
     int32_t rim_count;
     size_t arc_capacity, joint_capacity, rim_capacity;
+    bool overlaps; // surfaces may, as a mesh says
     // Corners, where something may overlap; of facets the one where they end.
     barrier_corner *corner;
     int32_t *corner_of, corner_count;
@@ -199,6 +223,8 @@ struct brunt_barrier {
     int32_t asked_count;
     size_t point_box_capacity, facet_box_capacity, edge_box_capacity, far_capacity, asked_capacity;
     brunt_near_cells facet_cells, edge_cells;
+    barrier_wide wide;
+    barrier_clear clear;
     brunt_near_list facets, planes, edges; // of points, points, edges
     bool known;                            // they are of this step
     double part;                           // of a way that they are found along, no step goes farther
@@ -252,6 +278,8 @@ void barrier_move(const brunt_barrier *b, int32_t place, const double *u, double
 // Places as they are at u, measured from where `from` is then.
 void barrier_relative(const brunt_barrier *b, const double *u, int32_t from, const int32_t *place, int count,
                       double (*out)[3]);
+// How many unknowns there are, at least: up to the last of a point.
+int64_t barrier_unknowns(const brunt_barrier *b);
 // Block nodes of a place and their weights: how many; 0: a plane that does not move.
 int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **node, const double **weight);
 
@@ -286,6 +314,13 @@ double barrier_take_reach(barrier_way *way, const brunt_team *team);
 int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, double part,
                       brunt_error *error);
 
+// --- what is near with room to spare (barrier_wide.c): where there are no material points
+// Whether it has all that is near by the boxes as they are.
+bool barrier_wide_holds(const brunt_barrier *b);
+// Keeps the boxes as they are, and makes cells of larger ones. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int barrier_wide_make(brunt_barrier *b, const brunt_team *team, brunt_error *error);
+void barrier_wide_free(barrier_wide *wide);
+
 // --- contacts (barrier_contacts.c)
 // The contacts of a task at u, in the order of what it is near, handed to `take`.
 typedef void barrier_take(void *context, const barrier_contact *contact);
@@ -315,9 +350,9 @@ void barrier_meet_arc(const brunt_barrier *b, const barrier_feature *f, int32_t 
 // --- surfaces that may overlap (barrier_overlap.c)
 // The gap of a contact with a feature gets its sign: inside the other body it is negative, and n points out of it.
 void barrier_sign(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u, brunt_closest *at);
-// Whether a point is certainly outside a body of the pair and farther from it than they push each other from: by the
-// nearest chord of its rim, within what curves bend from theirs.
-bool barrier_is_clear_of(const brunt_barrier *b, int32_t point, int32_t body, const brunt_barrier_pair *pair,
+// [m] How far a point is certainly outside a body of the pair, beyond what they push each other from: by the nearest
+// chord of its rim, within what curves bend from theirs. 0 or less: it may not be.
+double barrier_clearance(const brunt_barrier *b, int32_t point, int32_t body, const brunt_barrier_pair *pair,
                          const double *u);
 // Of a point's features that it is within, the nearest alone of each law counts, once, if nothing is nearer that it is
 // before; none that is beyond the distance.
@@ -326,6 +361,23 @@ void barrier_settle_overlaps(const brunt_barrier *b, int32_t point, const double
 double barrier_overlap_limit(double gap, double reach, double way, double largest);
 // Whether a gap is so far below 0 that it is not known which way is out.
 static inline bool barrier_is_lost(const barrier_law *law, double gap) { return law->reach > 0 && gap < -law->reach; }
+
+// --- points clear of bodies that they may overlap (barrier_clear.c)
+// As a mesh is set.
+void barrier_clear_begin(brunt_barrier *b);
+// [m] What clearances have lessened by at u, at most.
+double barrier_clear_lost(const brunt_barrier *b, const double *u);
+// [m] How far points and curves go along each other by p, at most.
+double barrier_clear_way(const brunt_barrier *b, const double *p);
+// Whether a point is clear of a body at u, by what was kept of it or anew; the first such body is noted.
+bool barrier_is_clear_of(const brunt_barrier *b, int32_t point, int32_t body, const double *u, barrier_workspace *r);
+// Room for all points. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int barrier_clear_reserve(brunt_barrier *b, brunt_error *error);
+// Takes over what was noted of a task's point; keeps all of that as what is so at u. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+void barrier_clear_note(brunt_barrier *b, int32_t point, const barrier_workspace *r);
+int barrier_clear_keep(brunt_barrier *b, const double *u, int64_t unknowns, brunt_error *error);
+void barrier_clear_free(barrier_clear *clear);
 
 // --- corners of those (barrier_corner.c)
 // Finds the corners of the mesh, whose vertices are at x. BRUNT_OK, or BRUNT_FAILED: out of memory.

@@ -68,3 +68,13 @@ void barrier_relative(const brunt_barrier *b, const double *u, int32_t from, con
         for (int k = 0; k < 3; k++) out[i][k] = k < b->dim ? (x[k] - x0[k]) + (move[k] - base[k]) : 0;
     }
 }
+
+int64_t barrier_unknowns(const brunt_barrier *b) {
+    const brunt_barrier_particles *p = &b->step.particles;
+    int32_t last = -1;
+    for (int32_t v = 0; v < b->vertex_count; v++) last = b->step.node[v] > last ? b->step.node[v] : last;
+    for (int64_t k = 0; p->count && k < p->first[p->count]; k++) last = p->node[k] > last ? p->node[k] : last;
+    for (int32_t q = 0; q < b->step.plane_count; q++)
+        last = b->step.planes[q].node > last ? b->step.planes[q].node : last;
+    return ((int64_t)last + 1) * b->dim;
+}

@@ -5,17 +5,6 @@ enum { AT_ONCE = 1024 }; // contacts whose forces are kept at a time
 
 // ---------------------------------------------------------------------------------------------------- barrier
 
-// How many unknowns there are, at least: up to the last of a point.
-static int64_t unknowns_of(const brunt_barrier *b) {
-    const brunt_barrier_particles *p = &b->step.particles;
-    int32_t last = -1;
-    for (int32_t v = 0; v < b->vertex_count; v++) last = b->step.node[v] > last ? b->step.node[v] : last;
-    for (int64_t k = 0; p->count && k < p->first[p->count]; k++) last = p->node[k] > last ? p->node[k] : last;
-    for (int32_t q = 0; q < b->step.plane_count; q++)
-        last = b->step.planes[q].node > last ? b->step.planes[q].node : last;
-    return ((int64_t)last + 1) * b->dim;
-}
-
 // Whether contacts are listed where places are by u: the terms are asked there one after the other, for forces, sets,
 // and Hessians.
 static bool is_here(const brunt_barrier *b, const double *u) {
@@ -25,10 +14,11 @@ static bool is_here(const brunt_barrier *b, const double *u) {
 // Lists contacts at u, what is near being known.
 static int list_at(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
     if (is_here(b, u)) return BRUNT_OK;
-    const int64_t count = u ? unknowns_of(b) : 0; // NULL: all are 0, and nodes may have no numbers yet
+    const int64_t count = u ? barrier_unknowns(b) : 0; // NULL: all are 0, and nodes may have no numbers yet
     b->here_count = 0, b->looked_here = false, b->stale = true;
     if (barrier_list_contacts(b, team, u, &b->contacts, error) ||
-        BRUNT_CAPACITY(b->here, (size_t)count + 1, 0, "unknowns of contact", error))
+        BRUNT_CAPACITY(b->here, (size_t)count + 1, 0, "unknowns of contact", error) ||
+        (b->overlaps && barrier_clear_keep(b, u, count, error)))
         return BRUNT_FAILED;
     if (u) memcpy(b->here, u, (size_t)count * sizeof *u);
     b->here_count = count;
@@ -78,6 +68,7 @@ static int term_look(void *self, const brunt_team *team, const double *u, const 
     brunt_barrier *b = self;
     // No step goes farther than what was near last lets it, which spares what lies along the rest of a long one.
     const double part = p && b->known ? barrier_limit(b, team, u, p, 1) : 1;
+    if (!p && b->looked_here && is_here(b, u)) return brunt_hand_on(error, &b->unsaid);
     if (brunt_hand_on(error, &b->unsaid) || barrier_find_near(b, team, u, p, part, error)) return BRUNT_FAILED;
     b->contacts.count = b->sets.count = 0;
     b->stale = true;

@@ -193,6 +193,17 @@ int64_t brunt_near_find(const brunt_near_cells *c, const brunt_near_box *box, br
     return found;
 }
 
+int64_t brunt_near_among(const brunt_near_list *list, const brunt_near_box *item, int dim, const brunt_near_box *box,
+                         int32_t query, int32_t *out) {
+    int64_t found = 0;
+    for (int64_t k = list->first[query]; k < list->first[query + 1]; k++) {
+        if (!boxes_meet(box, &item[list->item[k]], dim)) continue;
+        if (out) out[found] = list->item[k];
+        found++;
+    }
+    return found;
+}
+
 bool brunt_near_any(const brunt_near_cells *c, const brunt_near_box *box) {
     if (c->count == 0) return false;
     for (int k = 0; k < c->dim; k++)
@@ -220,6 +231,12 @@ static void list_count(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
+static bool ascends(const int32_t *item, int64_t count) {
+    for (int64_t i = 1; i < count; i++)
+        if (item[i] < item[i - 1]) return false;
+    return true;
+}
+
 static int ascending(const void *a, const void *b) {
     const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return (x > y) - (x < y);
@@ -234,7 +251,8 @@ static void list_fill(void *context, int64_t begin, int64_t end, int worker) {
         if (count == 0) continue;
         const int64_t found = w->queries->find(w->queries->context, q, w->list->item + first);
         BRUNT_ASSERT(found == count);
-        qsort(w->list->item + first, (size_t)count, sizeof *w->list->item, ascending);
+        if (!ascends(w->list->item + first, count))
+            qsort(w->list->item + first, (size_t)count, sizeof *w->list->item, ascending);
     }
 }
 

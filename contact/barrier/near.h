@@ -40,6 +40,11 @@ typedef bool brunt_near_wanted(const void *context, int32_t query, int32_t item)
 int64_t brunt_near_find(const brunt_near_cells *cells, const brunt_near_box *box, brunt_near_wanted *wanted,
                         const void *context, int32_t query, int32_t *out);
 
+// Of those that a list has for a query, the ones whose box shares a point with `box`: their count, and themselves
+// unless `out` is NULL.
+int64_t brunt_near_among(const brunt_near_list *list, const brunt_near_box *item, int dim, const brunt_near_box *box,
+                         int32_t query, int32_t *out);
+
 // Whether items may be where a box is: false is sure.
 bool brunt_near_any(const brunt_near_cells *cells, const brunt_near_box *box);
 
