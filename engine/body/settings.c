@@ -27,6 +27,7 @@ void brunt_settings_make(brunt_settings *s, const brunt_world_def *def, bool par
     s->threads = def->threads > 0 ? def->threads : brunt_threads_available();
     if (s->threads > BRUNT_THREAD_LIMIT) s->threads = BRUNT_THREAD_LIMIT;
     s->transfer = def->transfer;
+    s->flip_per_step = def->flip_per_step;
     s->flip = def->flip, s->apic = def->transfer == BRUNT_APIC ? def->apic : 0;
     s->fixed_step = def->step, s->end = def->end;
     s->scheme = def->scheme, s->newton = def->newton;

@@ -11,6 +11,7 @@ typedef struct brunt_settings {
     brunt_scheme scheme;
     brunt_newton_def newton;     // of implicit steps
     double flip, apic, cell;     // [-] shares that FLIP and APIC keep, [m] of the grids
+    bool flip_per_step;          // FLIP's is of an explicit step; else, as APIC's, of the time h / 2c
     double cfl, fixed_step, end; // [-], [s] 0: the stable one, [s]
 } brunt_settings;
 

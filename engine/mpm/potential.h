@@ -36,7 +36,7 @@ typedef struct brunt_mpm_motion {
     const double *v;     // [m/s] velocities at its end
     const double *v_old; // [m/s] at its start, from the particles; of FLIP only
     brunt_transfer transfer;
-    double flip; // share of FLIP, the rest PIC
+    double flip; // share of FLIP that this step keeps, the rest PIC
 } brunt_mpm_motion;
 
 typedef struct brunt_mpm_result {

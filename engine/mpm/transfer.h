@@ -30,8 +30,8 @@ typedef void brunt_p2g_fn(brunt_body *body, int32_t block, real dt);
 brunt_p2g_fn brunt_p2g_triangles;
 
 // Velocity and its gradient from the grid to the particles of `block`, then their update: velocity, position,
-// deformation gradient, material. Fills body->report[block]. `kept`: the share of FLIP, or what this step leaves of
-// APIC's (brunt_share_left).
+// deformation gradient, material. Fills body->report[block]. `kept`: what this step leaves of the share of FLIP or
+// APIC.
 typedef void brunt_g2p_fn(brunt_body *body, int32_t block, real dt, real kept, brunt_workspace *work);
 
 // kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC; axisymmetric with dim 2

@@ -26,10 +26,11 @@ static void p2g_blocks(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t b = begin; b < end; b++) p2g(job->body, (int32_t)b, (real)job->dt);
 }
 
-// What the gather is told of shares: FLIP's is of a step, APIC's of a time.
+// What a step leaves of the share that points keep of their own; 0 where they keep none.
 static double kept_of(const brunt_settings *s, const brunt_body *body, double dt) {
-    return s->apic > 0 ? brunt_share_left(s->apic, (double)body->material.wave_speed, (double)body->grid.h, dt)
-                       : s->flip;
+    const double share = s->transfer == BRUNT_FLIP ? s->flip : s->apic;
+    if (share == 0 || (s->transfer == BRUNT_FLIP && s->flip_per_step)) return share;
+    return brunt_share_left(share, (double)body->material.wave_speed, (double)body->grid.h, dt);
 }
 
 static void g2p_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -130,9 +131,9 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
 
 int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_settings *s = &world->settings; // what particles keep of their own knows nothing of the images
-    if (s->apic > 0)
-        return fold_kept(world, step->body, kept_of(&world->settings, step->body, step->dt), step->dt, error);
-    fold_symmetry(&world->boundaries, step->body, s->transfer == BRUNT_FLIP ? 1 - s->flip : 1, true);
+    const double kept = kept_of(s, step->body, step->dt);
+    if (s->apic > 0) return fold_kept(world, step->body, kept, step->dt, error);
+    fold_symmetry(&world->boundaries, step->body, 1 - kept, true);
     return BRUNT_OK;
 }
 
@@ -243,14 +244,15 @@ int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error) 
 static void musl_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
     for (int64_t b = begin; b < end; b++)
-        job->world->transfers.musl_velocity(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
+        job->world->transfers.musl_velocity(job->body, (int32_t)b, (real)job->dt, (real)job->kept,
                                             &job->world->scratch.points[worker]);
 }
 
 static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     static const double weightless[3] = {0, 0, 0};
     brunt_timer *timer = brunt_pass_timer(&world->timing);
-    body_job job = {.world = world, .body = body, .dt = dt}, still = {.world = world, .body = body};
+    const double kept = kept_of(&world->settings, body, dt);
+    body_job job = {.world = world, .body = body, .dt = dt, .kept = kept}, still = {.world = world, .body = body};
     brunt_grid_job nodes = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, musl_blocks, &job, timer);
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, p2g_blocks, &still, timer);

@@ -50,8 +50,9 @@ static const scene_key own_rows[] = {
     {"grid.kernel", SCENE_WORD, NULL, "quadratic", ANY, "linear|quadratic|cubic", 0, false, "B-spline that links particles to nodes; linear goes with flip, apic makes energy on it"},
     {"grid.cells", SCENE_WORD, NULL, "quads", ANY, "quads|triangles", 0, false, "2D with scheme implicit or static, kernel linear and transfer flip or pic: triangles, in two of which a diagonal cuts each cell; {mesh: FILE} takes those of a mesh, and `cell` is the length that spacing and pieces of lines go by"},
     {"grid.cells.mesh", SCENE_TEXT, NULL, OPTIONAL, NONE, "a gmsh file (.msh 2.2 or 4.1) with triangles; its path counts from the scene's folder; no material point may leave it"},
-    {"grid.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|flip|apic", 0, false, "velocity transfer; {flip: SHARE} and {apic: SHARE} set the share of what is the particles' own that is kept; apic alone is {apic: 0}"},
-    {"grid.transfer.flip", SCENE_REAL, "1", "0.99", 0, 1, false, false, NULL, 0, true, "share of a particle's own velocity that is kept in each step"},
+    {"grid.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|flip|apic", 0, false, "velocity transfer; {flip: SHARE} and {apic: SHARE} set the share of what is the particles' own that is kept; apic alone is {apic: 0}, flip alone {flip: 0.99}"},
+    {"grid.transfer.flip", SCENE_REAL, "1", "0.99", 0, 1, false, false, NULL, 0, true, "share that is kept of a particle's own velocity, beside the grid's: what is left of it after the time cell / 2c, whatever the steps, c the wave speed of the undeformed material; of implicit steps, which are many of these, after each step"},
+    {"grid.transfer.flip_per_step", SCENE_REAL, "1", OPTIONAL, 0, 1, false, false, NULL, 0, false, "what flip was: the share that each step keeps, explicit ones too; goes with the next version"},
     {"grid.transfer.apic", SCENE_REAL, "1", "0", 0, 0.98, false, false, NULL, 0, true, "share that is kept of what the grid does not see of a particle's velocity and affine field: what is left of it after the time cell / 2c, whatever the steps, c the wave speed of the undeformed material (0.9 for bodies that collide); above 0 explicit steps, kernel quadratic or cubic, cfl <= 0.9"},
 
     {"materials", SCENE_NAMED, NULL, REQUIRED, NONE, "materials by name"},

@@ -148,6 +148,46 @@ static void fill_cells(scene_reader *reader, const scene_node *grid) {
                             brunt_element_name(world->background.kind));
 }
 
+// The word alone and the map with its default are the same: the resolved scene has the map.
+static void spell_out_flip(scene_reader *reader, scene_node *transfer) {
+    if (transfer->kind != SCENE_SCALAR || !transfer->good || transfer->value[0] != BRUNT_FLIP) return;
+    transfer->kind = SCENE_MAP;
+    brunt_add_default(reader, transfer, "flip", "0.99");
+}
+
+// The share of FLIP was one of a step, in explicit steps too: whoever gives one is told, for a version.
+static void tell_of_flip(scene_reader *reader, const scene_node *transfer, const scene_node *per_step) {
+    const brunt_world_def *world = &reader->scene->world;
+    if (per_step)
+        brunt_scene_warn_at(reader, per_step, true,
+                            "what 'flip' was: 'flip' is now what is left after the time cell / 2c (of implicit steps: "
+                            "after each), this one goes with the next version");
+    else if (world->scheme == BRUNT_EXPLICIT && world->flip > 0 && world->flip < 1)
+        brunt_scene_warn_at(reader, transfer, true,
+                            "flip: %g is now what is left after the time cell / 2c, a step at cfl "
+                            "0.5; what each step keeps, which it was, is {flip_per_step: %g}",
+                            world->flip, world->flip);
+}
+
+static void fill_transfer(scene_reader *reader, scene_node *transfer) {
+    brunt_world_def *world = &reader->scene->world;
+    spell_out_flip(reader, transfer);
+    if (transfer->kind != SCENE_MAP) {
+        world->transfer = (brunt_transfer)(int)brunt_real_of(transfer->parent, "transfer", BRUNT_APIC);
+        return;
+    }
+    const scene_node *flip = brunt_tree_child(transfer, "flip"), *apic = brunt_tree_child(transfer, "apic"),
+                     *per_step = brunt_tree_child(transfer, "flip_per_step");
+    if (!!flip + !!apic + !!per_step != 1)
+        brunt_tree_complain(reader->tree, transfer,
+                            "{flip: SHARE} or {apic: SHARE} is wanted, or one of the words pic, flip, apic");
+    world->transfer = apic ? BRUNT_APIC : BRUNT_FLIP;
+    world->flip = brunt_real_of(transfer, per_step ? "flip_per_step" : "flip", world->flip);
+    world->flip_per_step = per_step != NULL;
+    world->apic = brunt_real_of(transfer, "apic", world->apic);
+    if (!apic) tell_of_flip(reader, transfer, per_step);
+}
+
 // Only material points need the grid; one beside finite elements alone is accepted, so that a method can be changed by
 // an override.
 static void fill_grid(scene_reader *reader) {
@@ -163,23 +203,7 @@ static void fill_grid(scene_reader *reader) {
     world->kernel = (brunt_kernel)(BRUNT_LINEAR + (int)brunt_real_of(grid, "kernel", 1));
     fill_cells(reader, grid);
     scene_node *transfer = brunt_tree_child(grid, "transfer");
-    if (!transfer) return;
-    if (transfer->kind == SCENE_SCALAR && transfer->good && transfer->value[0] == BRUNT_FLIP) {
-        // The word alone and the map with its default are the same: the resolved scene has the map.
-        transfer->kind = SCENE_MAP;
-        brunt_add_default(reader, transfer, "flip", "0.99");
-    }
-    if (transfer->kind == SCENE_MAP) {
-        const bool flip = brunt_tree_child(transfer, "flip") != NULL, apic = brunt_tree_child(transfer, "apic") != NULL;
-        if (flip == apic)
-            brunt_tree_complain(reader->tree, transfer,
-                                "{flip: SHARE} or {apic: SHARE} is wanted, or one of the words pic, flip, apic");
-        world->transfer = apic ? BRUNT_APIC : BRUNT_FLIP;
-        world->flip = brunt_real_of(transfer, "flip", world->flip);
-        world->apic = brunt_real_of(transfer, "apic", world->apic);
-    } else {
-        world->transfer = (brunt_transfer)(int)brunt_real_of(grid, "transfer", BRUNT_APIC);
-    }
+    if (transfer) fill_transfer(reader, transfer);
 }
 
 // Where neither step nor cfl is given: as the grid, kernel and transfer of the points ask for, or meshes alone bear.

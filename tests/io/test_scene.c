@@ -628,6 +628,38 @@ START_TEST(shares_of_transfers) {
 }
 END_TEST
 
+// A share of FLIP is of a time; what it was goes on by its own name. Whoever gives one of explicit steps is told.
+START_TEST(share_of_flip_is_of_a_time) {
+    static const char solid[] =
+        "brunt: 1\ndimension: 2\ntime: {end: 1 s}\ngrid: {cell: 0.1 m}\n"
+        "materials:\n  rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}\n"
+        "bodies:\n  block: {method: mpm, material: rubber, shape: {box: {min: [0, 0], max: [1 m, 0.5 m]}}}\n";
+    static const struct {
+        const char *set[2];
+        double share;
+        bool per_step;
+        const char *told; // "": nothing is
+    } ways[] = {
+        {{"grid.transfer=flip", ""}, 0.99, false, "flip: 0.99 is now what is left after the time cell / 2c"},
+        {{"grid.transfer={flip: 0.9}", ""}, 0.9, false, "flip: 0.9 is now what is left after the time cell / 2c"},
+        {{"grid.transfer={flip: 1}", ""}, 1, false, ""},
+        {{"grid.transfer={flip: 0.9}", "time={scheme: implicit, step: 1 ms, end: 1 s}"}, 0.9, false, ""},
+        {{"grid.transfer={flip_per_step: 0.9}", ""}, 0.9, true, "this one goes with the next version"},
+    };
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        brunt_scene s;
+        ck_assert_msg(parse(solid, (const char **)ways[k].set, ways[k].set[1][0] ? 2 : 1, &s) == BRUNT_OK, "%s",
+                      messages);
+        ck_assert_int_eq(s.world.transfer, BRUNT_FLIP);
+        NEAR(s.world.flip, ways[k].share);
+        ck_assert(s.world.flip_per_step == ways[k].per_step);
+        const char *said = s.warnings ? s.warnings : "";
+        ck_assert_msg(ways[k].told[0] ? strstr(said, ways[k].told) != NULL : !said[0], "%s", said);
+        brunt_scene_free(&s);
+    }
+}
+END_TEST
+
 static char *read_file(const char *path) {
     FILE *file = fopen(path, "rb");
     if (!file) return NULL;
@@ -849,6 +881,7 @@ int main(void) {
     tcase_add_test(tcase, units);
     tcase_add_test(tcase, overrides);
     tcase_add_test(tcase, shares_of_transfers);
+    tcase_add_test(tcase, share_of_flip_is_of_a_time);
     tcase_add_test(tcase, order);
     tcase_add_test(tcase, fixpoint);
     tcase_add_test(tcase, reference);

@@ -58,11 +58,13 @@ typedef enum brunt_cells {
 } brunt_cells;
 typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
 // PIC: Harlow 1964, "The particle-in-cell computing method for fluid dynamics". FLIP: Brackbill and Ruppel 1986, "FLIP:
-// a method for adaptively zoned, particle-in-cell calculations of fluid flows in two dimensions"; points keep the share
-// `flip` of their own velocity, and PIC's has the rest (Zhu and Bridson 2005, "Animating sand as a fluid"). APIC:
-// Jiang, Schroeder, Selle, Teran and Stomakhin 2015, "The affine particle-in-cell method"; of
-// what the grid does not see of their velocity and affine field, points keep a share, of which `apic` is left after the
-// time cell / 2c, c the wave speed of the undeformed material. (Above 0: explicit steps, not linear, cfl <= 0.9.)
+// a method for adaptively zoned, particle-in-cell calculations of fluid flows in two dimensions"; points keep a share
+// of their own velocity, and PIC's has the rest (Zhu and Bridson 2005, "Animating sand as a fluid"). `flip` of it is
+// left after the time cell / 2c, c the wave speed of the undeformed material; in implicit steps, which take many of
+// these, after a step, as in explicit ones with `flip_per_step` (what it was one version ago). APIC: Jiang, Schroeder,
+// Selle, Teran and Stomakhin 2015, "The affine particle-in-cell method"; of what the grid does not see of their
+// velocity and affine field, points keep a share, of which `apic` is left after the time cell / 2c, c the wave speed of
+// the undeformed material. (Above 0: explicit steps, not linear, cfl <= 0.9.)
 typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
 
 // Tied: bodies of material points share one velocity field at the grid nodes that both reach, in both directions: they
@@ -159,7 +161,9 @@ typedef struct brunt_world_def {
     brunt_cells cells;       // default quads; others: implicit and static in two dimensions, linear, not with APIC
     brunt_mesh background;   // of BRUNT_TRI3, for BRUNT_MESH_CELLS; owned
     brunt_transfer transfer; // default APIC
-    double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
+    double flip;             // [-] for FLIP: share of the particle's own velocity kept over a time cell / 2c, 0..1;
+                             // default 0.99; of implicit steps, over a step
+    bool flip_per_step;      // `flip` is over a step, explicit ones too; default false
     double apic;             // [-] for APIC: share kept over a time cell / 2c, 0..0.98; default 0
     double cfl;     // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
     double step;    // [s] fixed time step, 0 = from cfl; implicit steps: > 0; static: not used
