@@ -66,14 +66,14 @@ static bool is_among(int32_t body, const int32_t *list, int32_t count) {
 // The two nearest facets of all, whichever way they face.
 typedef struct two_nearest {
     int32_t face;
-    double first, second;   // squares of their distances
-    double normal_distance; // [m] how far the place is before or behind the nearest one
+    double first, second;  // squares of their distances
+    double height, square; // [m] of the place above the nearest one; square of the distance to that
 } two_nearest;
 
 // Notes a facet. Of those that are equally near, as at an edge or a corner, the one that most faces the place tells on
 // which side of the surface that is, whatever their order.
 static void add_nearest(two_nearest *two, const brunt_closest *at, int32_t face) {
-    const double normal_distance = fabs(dot(at->normal, at->d)), same = two->face < 0 ? 0 : 1e-9 * two->first;
+    const double height = dot(at->normal, at->d), same = two->face < 0 ? 0 : 1e-9 * two->first;
     if (at->square >= two->first + same) {
         two->second = fmin(two->second, at->square);
         return;
@@ -81,7 +81,7 @@ static void add_nearest(two_nearest *two, const brunt_closest *at, int32_t face)
     const bool nearer = at->square < two->first - same;
     two->second = fmax(two->first, at->square);
     two->first = fmin(two->first, at->square);
-    if (nearer || normal_distance > two->normal_distance) two->face = face, two->normal_distance = normal_distance;
+    if (nearer || fabs(height) > fabs(two->height)) two->face = face, two->height = height, two->square = at->square;
 }
 
 static bool in_patch(const search_query *l, int32_t face) {
@@ -132,7 +132,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
     brunt_closest guessed;
     if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = tie(s, guessed.square);
     int bodies = 0;
-    if (all) *all = (two_nearest){-1, range2, range2, 0};
+    if (all) *all = (two_nearest){-1, range2, range2, 0, range2};
     for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
         int32_t face = f->cells.face[q];
         const int32_t other = s->face_body[face];
@@ -262,11 +262,9 @@ static void thicken(const brunt_contact_surface *s, double half, candidate_list 
         out->candidate[q].gap -= half + s->membrane.side[out->candidate[q].body].half;
 }
 
-// Whether a place is clearly before a facet.
-static inline bool is_before(const brunt_contact_surface *s, int32_t face, const double x[3]) {
-    const brunt_closest at = brunt_closest_on_face(s, face, x);
-    const double height = dot(at.normal, at.d);
-    return height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
+// Whether a place is clearly before the nearest facet of all.
+static inline bool is_before(const brunt_contact_surface *s, const two_nearest *two) {
+    return two->height > 1e-6 * s->mean_edge && two->height > 0.1 * sqrt(two->square);
 }
 
 // What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
@@ -308,7 +306,7 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     // What is before the nearest facet of all is outside, even if the nearest facet that faces it is seen from
     // behind. A membrane has no inside: it tells nothing of the others.
     const bool by_membrane = membranes && two.face >= 0 && is_membrane(s, s->face_body[two.face]);
-    const bool outside = two.face >= 0 && !by_membrane && is_before(s, two.face, l->x);
+    const bool outside = two.face >= 0 && !by_membrane && is_before(s, &two);
     const bool plain = out->count == 0 && l->enters <= 1;
     bool inside = out->count > 0;
     for (int b = 0; b < bodies && out->count < BRUNT_MAX_CANDIDATES; b++) {

@@ -43,6 +43,12 @@ typedef struct brunt_master {
     int count;
 } brunt_master;
 
+// The corners of what a place is over, and their weights there.
+typedef struct brunt_corners {
+    int32_t node[BRUNT_FEATURE_NODES], count;
+    double weight[BRUNT_FEATURE_NODES];
+} brunt_corners;
+
 // The edges and corners that are met, by the worker that looked; none where nothing meets one.
 typedef struct master_list {
     brunt_master *master;

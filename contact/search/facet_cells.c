@@ -17,22 +17,17 @@ bool brunt_broad_phase_in_range(const brunt_node_to_facet *f, int32_t box, const
     return false;
 }
 
-static void face_bounds(const brunt_contact_surface *s, int32_t face, double low[3], double high[3]) {
-    for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
-    for (int c = 0; c < 4 && s->face[face][c] >= 0; c++)
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], s->x[s->face[face][c]][a]);
-            high[a] = fmax(high[a], s->x[s->face[face][c]][a]);
-        }
+// The cell of those along an axis that `at` is in, counted from the first, or the nearest one.
+static inline int32_t cell_along(double at, int32_t count) {
+    const double cell = floor(at), last = count - 1.0, below = cell < last ? cell : last;
+    return (int32_t)(below > 0 ? below : 0);
 }
 
 static void cell_range(const brunt_node_to_facet *f, const double low[3], const double high[3], double by,
                        int32_t from[3], int32_t to[3]) {
     for (int a = 0; a < 3; a++) {
-        double l = floor((low[a] - by - f->cells.origin[a]) / f->cells.cell),
-               h = floor((high[a] + by - f->cells.origin[a]) / f->cells.cell);
-        from[a] = (int32_t)fmax(0, fmin(l, f->cells.n[a] - 1.0));
-        to[a] = (int32_t)fmax(0, fmin(h, f->cells.n[a] - 1.0));
+        from[a] = cell_along((low[a] - by - f->cells.origin[a]) / f->cells.cell, f->cells.n[a]);
+        to[a] = cell_along((high[a] + by - f->cells.origin[a]) / f->cells.cell, f->cells.n[a]);
     }
 }
 
@@ -43,9 +38,8 @@ static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, b
     for (int k = 0; k < s->fem_count; k++) {
         if (f->bodies.first[f->bodies.box_of[k] + 1] == f->bodies.first[f->bodies.box_of[k]]) continue;
         for (int32_t face = s->face_range[k]; face < s->face_end[k]; face++) { // of a membrane, for both its sides
-            double low[3], high[3];
+            const double *low = s->face_box[face], *high = low + 3;
             int32_t from[3], to[3];
-            face_bounds(s, face, low, high);
             if (!brunt_broad_phase_in_range(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
             for (int c = 0; c < 4 && s->face[face][c] >= 0; c++) f->cells.near[s->face[face][c]] = true;
             if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face, error)) return BRUNT_FAILED;

@@ -30,23 +30,25 @@ double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, do
     return fmin(CORRECTION * -gap / dt, RESTITUTION * fmax(0, -came));
 }
 
-// Velocity of x relative to the facet under it, along n.
-double brunt_node_to_facet_approach(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
-                                    const double v[3], double (*of)[3]) {
-    double weight[4], along = dot(v, h->n);
+void brunt_node_to_facet_corners(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
+                                 brunt_corners *under) {
     if (h->feature.triangles) {
         brunt_master m;
-        brunt_node_to_facet_master(s, h, x, &m);
-        for (int c = 0; c < m.count; c++) along -= m.weight[c] * dot(of[m.node[c]], h->n);
-        return along;
+        under->count = brunt_node_to_facet_master(s, h, x, &m);
+        memcpy(under->node, m.node, sizeof m.node), memcpy(under->weight, m.weight, sizeof m.weight);
+        return;
     }
-    const int32_t *node = h->feature.any ? h->feature.end : s->face[h->face];
-    const int count = h->feature.any ? 2 : brunt_face_corners(s->face[h->face]);
+    under->count = h->feature.any ? 2 : brunt_face_corners(s->face[h->face]);
+    memcpy(under->node, h->feature.any ? h->feature.end : s->face[h->face], (size_t)under->count * sizeof *under->node);
     if (h->feature.any)
-        brunt_feature_values(s, &h->feature, x, weight);
+        brunt_feature_values(s, &h->feature, x, under->weight);
     else
-        brunt_face_values(s, h->face, h->triangle, x, weight);
-    for (int c = 0; c < count; c++) along -= weight[c] * dot(of[node[c]], h->n);
+        brunt_face_values(s, h->face, h->triangle, x, under->weight);
+}
+
+double brunt_node_to_facet_approach(const brunt_corners *under, const double n[3], const double v[3], double (*of)[3]) {
+    double along = dot(v, n);
+    for (int c = 0; c < under->count; c++) along -= under->weight[c] * dot(of[under->node[c]], n);
     return along;
 }
 
@@ -114,10 +116,11 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         facet_candidate *h = &found->candidate[q];
         if (h->gap > f->bodies.travel) continue;
         s->output.gap[n] = fmin(s->output.gap[n], h->gap);
-        double approach = brunt_node_to_facet_approach(s, h, s->x[n], s->v[n], s->v);
+        brunt_corners under;
+        brunt_node_to_facet_corners(s, h, s->x[n], &under);
+        const double approach = brunt_node_to_facet_approach(&under, h->n, s->v[n], s->v);
         h->target = brunt_node_to_facet_target(
-            s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(s, h, s->x[n], s->old[n], s->old) : 0,
-            m->dt);
+            s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(&under, h->n, s->old[n], s->old) : 0, m->dt);
         if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET))
             continue;
         if (h->feature.any) keep_master(f, s, h, s->x[n], worker);

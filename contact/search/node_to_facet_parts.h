@@ -65,8 +65,10 @@ double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const
 // The support of a surface node, made when it is first asked for. BRUNT_NONE: out of memory.
 int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
                                      brunt_constraint_set *constraints, brunt_error *error);
-double brunt_node_to_facet_approach(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
-                                    const double v[3], double (*of)[3]);
+// What of a facet is under x, or of a feature; and the velocity of x relative to that, along n.
+void brunt_node_to_facet_corners(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
+                                 brunt_corners *under);
+double brunt_node_to_facet_approach(const brunt_corners *under, const double n[3], const double v[3], double (*of)[3]);
 void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h, const double x[3],
                                     int body, brunt_constraint *constraint);
 int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],

@@ -35,12 +35,14 @@ static int add_particle_candidate(const search_job *j, particle_list *list, int3
     const brunt_contact_surface *surface = j->m->surface;
     double v[3], old[3], before = 0; // what it came with only matters to what is behind the surface
     brunt_particle_velocity(j->body, b, s, BRUNT_NODE_VELOCITY, v);
-    const double approach = brunt_node_to_facet_approach(surface, h, x, v, surface->v);
+    brunt_corners under;
+    brunt_node_to_facet_corners(surface, h, x, &under);
+    const double approach = brunt_node_to_facet_approach(&under, h->n, v, surface->v);
     const double spring = brunt_overlap_spring(j->m, j->body, s);
     const double gap = h->gap + (spring > 0 ? brunt_overlap_limit(j->body, brunt_extent_along(j->body, s, h->n)) : 0);
     if (gap < 0) {
         brunt_particle_velocity(j->body, b, s, BRUNT_NODE_OLD, old);
-        before = brunt_node_to_facet_approach(surface, h, x, old, surface->old);
+        before = brunt_node_to_facet_approach(&under, h->n, old, surface->old);
     }
     const double target = brunt_node_to_facet_target(surface, gap, fmin(before, LIFT * approach), before, j->m->dt);
     if (!(spring > 0 && h->gap < 0) && !(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;

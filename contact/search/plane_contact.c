@@ -137,7 +137,9 @@ void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const bru
                                        const brunt_constraint_set *constraints) {
     const brunt_contact_surface *s = m->surface;
     int k = 0;
-    for (int32_t n = 0; n < s->node_count; n++) {
+    bool any = false;
+    for (int w = 0; w < m->boundary_count; w++) any = any || brunt_boundary_holds(&m->boundaries[w]);
+    for (int32_t n = 0; any && n < s->node_count; n++) {
         while (s->node_range[k + 1] <= n) k++;
         if (f->nodes.dof_of[n] < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
         for (int a = 0; a < s->dim; a++) {
