@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
+
 enum { LANES = BRUNT_DOUBLES };
 #ifdef BRUNT_FLOAT
 #define EIGHT_LANES (BRUNT_LANES == 16) // as preprocessors see it
@@ -142,14 +144,30 @@ static void weigh(const brunt_constraint_set *p, block *b) {
     b->scale = doubles_select(alone > zero, doubles_set(1) / alone, zero);
 }
 
-void brunt_block_make(brunt_constraint_set *p, int64_t at) {
+static void fill(const brunt_constraint_set *p, int64_t at) {
     block *b = &p->block[at];
     b->count = are_alike(p, at * LANES) ? p->constraint[at * LANES].count : 0;
     if (!b->count) return;
     b->rubs = false;
     for (int l = 0; l < LANES; l++) copy_lane(p, &p->constraint[at * LANES + l], l, b);
-    weigh(p, b);
     brunt_block_take_back(b);
+}
+
+void brunt_block_make(brunt_constraint_set *p, int64_t at) {
+    if (at >= p->open_blocks || p->block[at].count == BRUNT_NONE) fill(p, at);
+}
+
+int brunt_constraints_open_blocks(brunt_constraint_set *p, brunt_error *error) {
+    const int32_t blocks = p->constraint_count / LANES;
+    if (BRUNT_CAPACITY(p->block, (size_t)blocks + 1, 0, "blocks of contact points", error)) return BRUNT_FAILED;
+    for (int32_t b = 0; b < blocks; b++) p->block[b].count = BRUNT_NONE;
+    p->open_blocks = blocks;
+    return BRUNT_OK;
+}
+
+int32_t brunt_constraints_fill_blocks(brunt_constraint_set *p, int32_t first, int32_t end) {
+    for (first = (first + LANES - 1) / LANES * LANES; first + LANES <= end; first += LANES) fill(p, first / LANES);
+    return first;
 }
 
 // ------------------------------------------------------------------------------------------ weighed
@@ -167,6 +185,7 @@ BRUNT_INLINE doubles magnitude(doubles a) { return doubles_max(a, -a); }
 void brunt_block_share(const brunt_constraint_set *p, block *b) {
     gifts g;
     b->shared = false;
+    weigh(p, b);
     for (int e = 0; e < b->count; e++) {
         const doubles share = magnitude(b->weight[e]) + lever(p, b, e);
         give(&g, e, share, share, share, b->scale);

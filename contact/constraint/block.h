@@ -9,7 +9,7 @@
 enum { BRUNT_BLOCK_ENTRIES = 5, BRUNT_BLOCK_MASTERS = BRUNT_BLOCK_ENTRIES - 1 };
 
 typedef struct brunt_constraint_block {
-    int32_t count; // entries of each; 0: they are not alike, and the rest is unused
+    int32_t count; // entries of each; 0: they are not alike, and the rest is unused; BRUNT_NONE: not looked at yet
     bool rubs;     // some have friction
     bool shared;   // some of their nodes are
     int32_t first[BRUNT_DOUBLES];
@@ -22,9 +22,10 @@ typedef struct brunt_constraint_block {
     doubles_mask slips;
 } brunt_constraint_block;
 
-// Makes block b of constraints from b * BRUNT_DOUBLES on, with their effective masses, unless they are not alike.
+// Makes block b of constraints from b * BRUNT_DOUBLES on, unless they are not alike or that has been done.
 void brunt_block_make(brunt_constraint_set *set, int64_t b);
-// What share_constraints, sum_rows and solve_constraint of solve.c do; the greatest correction of a sweep [m/s].
+// What weigh_constraint, share_constraint, sum_row and solve_constraint of solve.c do; the greatest correction of a
+// sweep [m/s].
 void brunt_block_share(const brunt_constraint_set *set, brunt_constraint_block *block);
 void brunt_block_sum_rows(const brunt_constraint_set *set, brunt_constraint_block *block);
 double brunt_block_solve(const brunt_constraint_set *set, brunt_constraint_block *block);

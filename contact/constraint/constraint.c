@@ -26,7 +26,7 @@ void brunt_constraints_validate(const brunt_constraint_set *p) {
 }
 
 void brunt_constraints_clear(brunt_constraint_set *p) {
-    p->constraint_count = p->entry_count = p->friction_point_count = p->dof_node_count = 0;
+    p->constraint_count = p->entry_count = p->friction_point_count = p->dof_node_count = p->open_blocks = 0;
 }
 
 void brunt_constraints_free(brunt_constraint_set *p) {

@@ -137,6 +137,7 @@ typedef struct brunt_constraint_set {
     size_t given_capacity;
     struct brunt_constraint_block *block; // of so many constraints at a time, where they are alike (block.h)
     size_t block_capacity;
+    int32_t open_blocks; // so many may have been made as their constraints were filled
     struct brunt_constraint_rates {
         double old[3], now[3]; // [m/s] relative velocity where it pushes, before the forces and now
     } * rates;                 // of each constraint, once it is solved
@@ -184,6 +185,11 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double
 // BRUNT_FAILED: out of memory.
 int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count, int32_t dof_count,
                               brunt_error *error);
+// What is filled in then, in any order and by several threads, may go to its blocks at once, while it is at hand: none
+// has yet; BRUNT_OK, or BRUNT_FAILED: out of memory. And constraints first .. end are complete and stay as they are, of
+// which those before `first` that it returns, a multiple of a block's, are done with.
+int brunt_constraints_open_blocks(brunt_constraint_set *set, brunt_error *error);
+int32_t brunt_constraints_fill_blocks(brunt_constraint_set *set, int32_t first, int32_t end);
 // Whether a point has given an impulse: what lets go only by pushing.
 static inline bool brunt_constraint_acts(const brunt_constraint *constraint) {
     return constraint->least < 0 || constraint->normal_impulse > 0;

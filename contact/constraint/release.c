@@ -54,8 +54,7 @@ static void note_taken(void *context, int64_t begin, int64_t end, int worker) {
         brunt_release *r = &p->release[k];
         *r = (brunt_release){0};
         if (!c->touch || !(c->normal_impulse > 0)) continue;
-        double old[3], now[3];
-        brunt_constraint_velocity(p, c, true, old), brunt_constraint_velocity(p, c, false, now);
+        const double *old = p->rates[k].old, *now = p->rates[k].now;
         const double motion = dot(old, old) + dot(now, now), J = c->normal_impulse;
         r->pushes = J > LEAST_PUSH * c->scale * sqrt(motion);
         r->alone = 0.5 * fmax(J * J / c->scale, LEAST_MOTION * c->scale * motion);
@@ -183,12 +182,15 @@ static void settle(brunt_constraint_set *p) {
         if (p->release[k].settled) p->constraint[k].touch->held += p->release[k].left;
 }
 
-int brunt_constraints_release(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
+int brunt_constraints_release(brunt_constraint_set *p, bool *gave, int threads, brunt_timer *timer,
+                              brunt_error *error) {
+    *gave = false;
     if (BRUNT_CAPACITY(p->release, (size_t)p->constraint_count, 0, "contact points", error)) return BRUNT_FAILED;
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
     brunt_parallel(threads, chunks, 1, note_taken, p, timer);
     if (!account_touches(p)) return BRUNT_OK;
     if (brunt_constraints_share_all(p, threads, timer, error)) return BRUNT_FAILED;
+    *gave = true;
     double held = 0;
     for (int round = 0; round < ROUNDS; round++) {
         const double left = sum_left(p);

@@ -8,5 +8,7 @@
 
 #include "contact/constraint/constraint.h"
 
-// After the sweeps of a set whose constraints have touches. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_constraints_release(brunt_constraint_set *set, int threads, brunt_timer *timer, brunt_error *error);
+// After the sweeps of a set whose constraints have touches, and their rates. `*gave`: something was given back, so that
+// the rates are others now. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_constraints_release(brunt_constraint_set *set, bool *gave, int threads, brunt_timer *timer,
+                              brunt_error *error);

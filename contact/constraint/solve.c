@@ -95,7 +95,8 @@ static int reserve_sweeps(brunt_constraint_set *p, brunt_error *error) {
                    BRUNT_CAPACITY(p->received, nodes, 0, "nodes that contact moves", error) ||
                    BRUNT_CAPACITY(p->sum, nodes, 0, "nodes that contact moves", error) ||
                    BRUNT_CAPACITY(p->load, nodes, 0, "nodes that contact moves", error) ||
-                   BRUNT_CAPACITY(p->block, points / BRUNT_DOUBLES + 1, 0, "blocks of contact points", error) ||
+                   BRUNT_CAPACITY(p->block, points / BRUNT_DOUBLES + 1, (size_t)p->open_blocks,
+                                  "blocks of contact points", error) ||
                    BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error)
                ? BRUNT_FAILED
                : BRUNT_OK;
@@ -121,14 +122,11 @@ static void weigh_constraint(const brunt_constraint_set *p, brunt_constraint *co
     constraint->scale = alone > 0 ? 1 / alone : 0;
 }
 
-// With the blocks, where constraints are alike.
-static void weigh_constraints(void *context, int64_t begin, int64_t end, int worker) {
+static void make_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
-        if (k % BRUNT_DOUBLES == 0) brunt_block_make(p, k / BRUNT_DOUBLES);
-        if (!block_at(p, k)) weigh_constraint(p, &p->constraint[k]);
-    }
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
+        brunt_block_make(p, k / BRUNT_DOUBLES);
 }
 
 static double greatest_component(const double weight[3]) {
@@ -148,7 +146,9 @@ static double share_of(const brunt_constraint_set *p, const brunt_constraint_ent
                                                 : greatest_component(entry->weight) + lever(p, entry->height_gradient);
 }
 
-static void share_constraint(const brunt_constraint_set *p, const brunt_constraint *constraint) {
+// Weighs it, too.
+static void share_constraint(const brunt_constraint_set *p, brunt_constraint *constraint) {
+    weigh_constraint(p, constraint);
     for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
         const double push = share_of(p, &p->entry[e]);
         const double rub = constraint->friction_point ? share_of(p, &p->entry[e + constraint->count]) : push;
@@ -396,13 +396,6 @@ static void solve_chunks(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-static void finish_chunks(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
-        if (block_at(p, k)) brunt_block_finish(p, k / BRUNT_DOUBLES);
-}
-
 // The velocities that go with the impulses the next sweep begins with.
 static void carry_on(double momentum, double now[3], double received[3], struct brunt_dof_past *past) {
     for (int a = 0; a < 3; a++) {
@@ -446,7 +439,7 @@ static void account_velocity(const brunt_constraint *constraint, double sign, do
 
 static void rate_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const brunt_constraint_set *p = context;
+    brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
         if (block_at(p, k)) {
             brunt_block_rates(p, k / BRUNT_DOUBLES);
@@ -455,6 +448,14 @@ static void rate_chunks(void *context, int64_t begin, int64_t end, int worker) {
         brunt_constraint_velocity(p, &p->constraint[k], true, p->rates[k].old);
         brunt_constraint_velocity(p, &p->constraint[k], false, p->rates[k].now);
     }
+}
+
+// What sweeps have come to, back to the constraints, with their rates.
+static void finish_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
+        if (block_at(p, k)) brunt_block_finish(p, k / BRUNT_DOUBLES);
+    rate_chunks(context, begin, end, worker);
 }
 
 static void account_constraints(brunt_constraint_set *p) {
@@ -574,7 +575,7 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
     p->now = p->state, p->levered = false;
     brunt_parallel(threads, groups, 1, begin_nodes, p, timer);
-    brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
+    brunt_parallel(threads, chunks, 1, make_blocks, p, timer);
     if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     if (!converges) {
         take_back(p);
@@ -583,8 +584,11 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
         if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     }
     brunt_parallel(threads, chunks, 1, finish_chunks, p, timer);
-    if (p->gives_back && brunt_constraints_release(p, threads, timer, error)) return BRUNT_FAILED;
-    brunt_parallel(threads, chunks, 1, rate_chunks, p, timer);
+    if (p->gives_back) {
+        bool gave;
+        if (brunt_constraints_release(p, &gave, threads, timer, error)) return BRUNT_FAILED;
+        if (gave) brunt_parallel(threads, chunks, 1, rate_chunks, p, timer);
+    }
     account_constraints(p);
     brunt_parallel(threads, groups, 1, end_nodes, p, timer);
     p->now = NULL;

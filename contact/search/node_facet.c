@@ -201,6 +201,7 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
     const brunt_contact_context *m = j->m;
     const brunt_contact_surface *s = m->surface;
     brunt_node_to_facet *f = j->f;
+    int32_t filled = f->nodes.first[2 * begin];
     for (int32_t n = (int32_t)begin; n < end; n++) {
         int32_t at = f->nodes.first[2 * n], entry = f->nodes.first[2 * n + 1];
         for (int32_t q = 0; q < f->nodes.count[n]; q++, at++) {
@@ -222,6 +223,7 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
                 constraint->touch = brunt_node_touch(&f->touches, n, TOUCHED_FACET);
             entry += constraint->count;
         }
+        filled = brunt_constraints_fill_blocks(j->constraints, filled, at);
     }
 }
 
@@ -311,6 +313,7 @@ static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_fa
     if (brunt_constraints_reserve(constraints, total[0], total[1], total[2], error)) return BRUNT_FAILED;
     constraints->constraint_count = total[0], constraints->entry_count = total[1];
     constraints->dof_node_count = total[2];
+    if (brunt_constraints_open_blocks(constraints, error)) return BRUNT_FAILED;
     brunt_parallel(m->threads, s->node_count, GRAIN, begin_dof_nodes, &j, m->timer);
     brunt_parallel(m->threads, s->node_count, GRAIN, fill_constraints, &j, m->timer);
     return BRUNT_OK;
@@ -352,16 +355,25 @@ int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, in
 
 // ------------------------------------------------------------------------------------------ the way back
 
-static void mark_state(brunt_contact_surface *s, const brunt_constraint_set *constraints) {
-    for (int32_t k = 0; k < constraints->constraint_count; k++) {
-        const brunt_constraint *p = &constraints->constraint[k];
+typedef struct finish_job {
+    brunt_contact_surface *surface;
+    brunt_node_to_facet *f;
+    const brunt_constraint_set *constraints;
+} finish_job;
+
+// What slips anywhere does; several threads may tell it of a node.
+static void mark_state(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const finish_job *j = context;
+    const brunt_contact_surface *s = j->surface;
+    for (int64_t k = begin; k < end; k++) {
+        const brunt_constraint *p = &j->constraints->constraint[k];
         if (p->tag < 0 || !(p->normal_impulse > 0)) continue;
-        uint8_t *state = &s->output.state[s->membrane.front ? s->membrane.front[p->tag] : p->tag];
-        bool slips = p->slips || !(p->friction > 0);
-        if (slips)
-            *state = 2;
-        else if (!*state)
-            *state = 1;
+        uint8_t *state = &s->output.state[s->membrane.front ? s->membrane.front[p->tag] : p->tag], none = 0;
+        if (p->slips || !(p->friction > 0))
+            __atomic_store_n(state, 2, __ATOMIC_RELAXED);
+        else if (!__atomic_load_n(state, __ATOMIC_RELAXED))
+            __atomic_compare_exchange_n(state, &none, 1, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
     }
 }
 
@@ -371,12 +383,6 @@ static void mark_gaps(brunt_contact_surface *s) {
         for (int32_t n = s->node_end[k]; s->active[k] && n < s->node_range[k + 1]; n++)
             s->output.gap[s->membrane.front[n]] = fmin(s->output.gap[s->membrane.front[n]], s->output.gap[n]);
 }
-
-typedef struct finish_job {
-    brunt_contact_surface *surface;
-    brunt_node_to_facet *f;
-    const brunt_constraint_set *constraints;
-} finish_job;
 
 static void finish_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -398,8 +404,9 @@ static void finish_nodes(void *context, int64_t begin, int64_t end, int worker) 
 void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
                                 const brunt_constraint_set *constraints) {
     brunt_contact_surface *s = m->surface;
-    brunt_parallel(m->threads, s->node_count, GRAIN, finish_nodes, &(finish_job){s, f, constraints}, m->timer);
+    finish_job j = {s, f, constraints};
+    brunt_parallel(m->threads, s->node_count, GRAIN, finish_nodes, &j, m->timer);
     brunt_node_to_facet_scatter_grids(m, mpm, f, constraints);
-    mark_state(s, constraints);
+    brunt_parallel(m->threads, constraints->constraint_count, GRAIN, mark_state, &j, m->timer);
     if (s->membrane.front) mark_gaps(s);
 }
