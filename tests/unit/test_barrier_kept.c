@@ -80,8 +80,8 @@ static void same_forces(pair_of_cases *t, const double *u) {
     ck_assert(!memcmp(t->g, t->h, (size_t)(t->kept->nodes * t->kept->dim) * sizeof *t->g));
 }
 
-// A step by a part of p; how much of it.
-static double walk(pair_of_cases *t, const double *u, const double *p, double *at, double share) {
+// A step from u by a share of as much of p as may be gone, to `at`.
+static void walk(pair_of_cases *t, const double *u, const double *p, double *at, double share) {
     const int n = t->kept->nodes * t->kept->dim;
     case_step(t->anew);
     case_look(t->anew, u, NULL), case_look(t->kept, u, NULL);
@@ -95,7 +95,6 @@ static double walk(pair_of_cases *t, const double *u, const double *p, double *a
         same_forces(t, at);
     }
     for (int i = 0; i < n; i++) at[i] = u[i] + limit * share * p[i];
-    return limit * share;
 }
 
 // Where u has led the next step begins; looked at where it goes on by as much.
