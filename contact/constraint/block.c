@@ -1,9 +1,11 @@
 #include "contact/constraint/block.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "contact/constraint/rest.h"
 
 enum { LANES = BRUNT_DOUBLES };
 #ifdef BRUNT_FLOAT
@@ -16,13 +18,14 @@ typedef brunt_constraint_block block;
 // ------------------------------------------------------------------------------------------ to lanes and back
 
 typedef double quad __attribute__((vector_size(32), may_alias));
+typedef double unaligned_quad __attribute__((vector_size(32), aligned(sizeof(double)), may_alias));
 
-// Three components of each lane's place in an array of four numbers each.
-BRUNT_INLINE void gather(double (*from)[4], const int32_t at[LANES], doubles out[3]) {
+// Four numbers of each lane, from where it has them.
+BRUNT_INLINE void take(const double *const at[LANES], doubles out[4]) {
 #if EIGHT_LANES
     quad r[LANES];
     for (int l = 0; l < LANES; l++) {
-        r[l] = *(const quad *)from[at[l]];
+        r[l] = *(const unaligned_quad *)at[l];
         __asm__("" : "+v"(r[l])); // whole: gcc 12 reads them one by one
     }
 #define BOTH(l) __builtin_shufflevector(r[l], r[(l) + 4], 0, 1, 2, 3, 4, 5, 6, 7)
@@ -35,36 +38,51 @@ BRUNT_INLINE void gather(double (*from)[4], const int32_t at[LANES], doubles out
     out[0] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
     out[1] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
     out[2] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
+    out[3] = __builtin_shufflevector(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
 #else
-    double column[3][LANES] __attribute__((aligned(64)));
+    double column[4][LANES] __attribute__((aligned(64)));
     for (int l = 0; l < LANES; l++)
-        for (int a = 0; a < 3; a++) column[a][l] = from[at[l]][a];
-    for (int a = 0; a < 3; a++) out[a] = doubles_load(column[a]);
+        for (int a = 0; a < 4; a++) column[a][l] = at[l][a];
+    for (int a = 0; a < 4; a++) out[a] = doubles_load(column[a]);
 #endif
 }
 
-// What each entry gives its node, of each lane: four numbers, even lanes first.
-typedef struct gifts {
-    _Alignas(64) double of[BRUNT_BLOCK_ENTRIES][LANES][4];
-} gifts;
-
-BRUNT_INLINE const double *gift_of(const gifts *g, int e, int l) {
-    return g->of[e][EIGHT_LANES ? (l & 1) * (LANES / 2) + l / 2 : l];
+// Three components of each lane's place in an array of four numbers each.
+BRUNT_INLINE void gather(double (*from)[4], const int32_t at[LANES], doubles out[3]) {
+    const double *place[LANES];
+    doubles all[4];
+    for (int l = 0; l < LANES; l++) place[l] = from[at[l]];
+    take(place, all);
+    for (int a = 0; a < 3; a++) out[a] = all[a];
 }
 
-BRUNT_INLINE void give(gifts *g, int e, doubles x, doubles y, doubles z, doubles w) {
+// Four numbers of each lane, even lanes first.
+typedef struct fours {
+    _Alignas(64) double of[LANES][4];
+} fours;
+
+// What each entry gives its node.
+typedef struct gifts {
+    fours of[BRUNT_BLOCK_ENTRIES];
+} gifts;
+
+BRUNT_INLINE const double *four_of(const fours *f, int l) {
+    return f->of[EIGHT_LANES ? (l & 1) * (LANES / 2) + l / 2 : l];
+}
+BRUNT_INLINE const double *gift_of(const gifts *g, int e, int l) { return four_of(&g->of[e], l); }
+
+BRUNT_INLINE void part(fours *g, doubles x, doubles y, doubles z, doubles w) {
 #if EIGHT_LANES
     const doubles low = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14); // x0 y0 x2 y2 x4 y4 x6 y6
     const doubles high = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
     const doubles low_z = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
     const doubles high_z = __builtin_shufflevector(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
-    doubles_store(g->of[e][0], __builtin_shufflevector(low, low_z, 0, 1, 8, 9, 2, 3, 10, 11));
-    doubles_store(g->of[e][2], __builtin_shufflevector(low, low_z, 4, 5, 12, 13, 6, 7, 14, 15));
-    doubles_store(g->of[e][4], __builtin_shufflevector(high, high_z, 0, 1, 8, 9, 2, 3, 10, 11));
-    doubles_store(g->of[e][6], __builtin_shufflevector(high, high_z, 4, 5, 12, 13, 6, 7, 14, 15));
+    doubles_store(g->of[0], __builtin_shufflevector(low, low_z, 0, 1, 8, 9, 2, 3, 10, 11));
+    doubles_store(g->of[2], __builtin_shufflevector(low, low_z, 4, 5, 12, 13, 6, 7, 14, 15));
+    doubles_store(g->of[4], __builtin_shufflevector(high, high_z, 0, 1, 8, 9, 2, 3, 10, 11));
+    doubles_store(g->of[6], __builtin_shufflevector(high, high_z, 4, 5, 12, 13, 6, 7, 14, 15));
 #else
-    for (int l = 0; l < LANES; l++)
-        g->of[e][l][0] = x[l], g->of[e][l][1] = y[l], g->of[e][l][2] = z[l], g->of[e][l][3] = w[l];
+    for (int l = 0; l < LANES; l++) g->of[l][0] = x[l], g->of[l][1] = y[l], g->of[l][2] = z[l], g->of[l][3] = w[l];
 #endif
 }
 
@@ -87,38 +105,67 @@ BRUNT_INLINE void hand_out(const brunt_constraint_set *p, const block *b, int co
 
 // ------------------------------------------------------------------------------------------ made
 
-static bool same(const double a[3]) { return a[0] == a[1] && a[1] == a[2]; }
+// What is read four numbers at a time.
+#define FOLLOWS(of, b, a, size)                                                                                        \
+    _Static_assert(offsetof(of, b) == offsetof(of, a) + (size), "read with what is before it")
+FOLLOWS(brunt_constraint, facet, n, 3 * sizeof(double));
+FOLLOWS(brunt_constraint, gap, facet, 3 * sizeof(double));
+FOLLOWS(brunt_constraint, target, gap, sizeof(double));
+FOLLOWS(brunt_constraint, least, friction, sizeof(double));
+FOLLOWS(brunt_constraint, spring, least, sizeof(double));
+FOLLOWS(brunt_constraint_entry, height_gradient, weight, 3 * sizeof(double));
+enum { LAST_WEIGHT = 2 };
 
-// Whether a constraint can be in a block: one that lets go, on what stands still or is a facet, with weights of all
-// components, and whose first entry is a slave's.
-static bool fits(const brunt_constraint_set *p, const brunt_constraint *c) {
-    bool fits = c->count <= BRUNT_BLOCK_ENTRIES && !c->friction_point && !c->sticks && c->least == 0 &&
-                !(c->spring > 0) && c->image == 0 && c->plane[0] == 0 && c->plane[1] == 0 && c->plane[2] == 0;
-    for (int32_t e = c->first; e < c->first + c->count && fits; e++)
-        fits = same(p->entry[e].weight) && !(p->levered && p->dof_node[p->entry[e].dof_node].angular);
-    const double *gradient = p->entry[c->first].height_gradient;
-    return fits && gradient[0] == 0 && gradient[1] == 0 && gradient[2] == 0;
+static bool all_lanes(doubles_mask m) {
+    int64_t all = -1;
+    for (int l = 0; l < LANES; l++) all &= m[l];
+    return all != 0;
 }
 
-static bool are_alike(const brunt_constraint_set *p, int64_t first) {
-    if (p->accelerated || first + LANES > p->constraint_count) return false;
-    for (int l = 0; l < LANES; l++)
-        if (p->constraint[first + l].count != p->constraint[first].count || !fits(p, &p->constraint[first + l]))
-            return false;
-    return true;
+// Whether a constraint can be in a block of so many entries each: one that lets go, on what stands still or is a facet.
+static bool fits(const brunt_constraint *c, int32_t count) {
+    return c->count == count && !c->friction_point && !c->sticks && c->image == 0 && c->plane[0] == 0 &&
+           c->plane[1] == 0 && c->plane[2] == 0;
 }
 
-static void copy_lane(const brunt_constraint_set *p, const brunt_constraint *c, int l, block *b) {
-    b->first[l] = c->first;
-    for (int e = 0; e < b->count; e++) {
-        const brunt_constraint_entry *entry = &p->entry[c->first + e];
-        b->dof_node[e][l] = entry->dof_node;
-        b->weight[e][l] = entry->weight[0];
-        for (int a = 0; a < 3 && e > 0; a++) b->height_gradient[e - 1][a][l] = entry->height_gradient[a];
+// Of LANES constraints; false: they are not alike.
+static bool take_constraints(const brunt_constraint *c, block *b) {
+    const double *normal[LANES], *facet[LANES], *friction[LANES];
+    doubles first[4], second[4], third[4], zero = {0};
+    for (int l = 0; l < LANES; l++) {
+        normal[l] = c[l].n, facet[l] = c[l].facet + 1, friction[l] = &c[l].friction;
+        b->first[l] = c[l].first;
     }
-    for (int a = 0; a < 3; a++) b->n[a][l] = c->n[a], b->facet[a][l] = c->facet[a];
-    b->target[l] = c->target, b->friction[l] = c->friction;
-    b->rubs = b->rubs || c->friction > 0;
+    take(normal, first), take(facet, second), take(friction, third);
+    for (int a = 0; a < 3; a++) b->n[a] = first[a];
+    b->facet[0] = first[3], b->facet[1] = second[0], b->facet[2] = second[1];
+    b->target = second[3], b->friction = third[0];
+    b->rubs = !all_lanes(~(b->friction > zero));
+    return all_lanes((third[1] == zero) & ~(third[2] > zero));
+}
+
+// Entry e of each; false: weights are not of all components, or the slave turns.
+static bool take_entries(const brunt_constraint_set *p, int e, block *b) {
+    const double *weight[LANES], *gradient[LANES];
+    doubles first[4], second[4], zero = {0};
+    for (int l = 0; l < LANES; l++) {
+        const brunt_constraint_entry *entry = &p->entry[b->first[l] + e];
+        b->dof_node[e][l] = entry->dof_node;
+        weight[l] = entry->weight, gradient[l] = entry->weight + LAST_WEIGHT;
+    }
+    take(weight, first), take(gradient, second);
+    b->weight[e] = first[0];
+    for (int a = 0; a < 3 && e > 0; a++) b->height_gradient[e - 1][a] = second[1 + a];
+    const doubles_mask turns =
+        e > 0 ? zero != zero : ~((second[1] == zero) & (second[2] == zero) & (second[3] == zero));
+    return all_lanes((first[0] == first[1]) & (first[1] == first[2]) & ~turns);
+}
+
+static bool any_angular(const brunt_constraint_set *p, const block *b) {
+    for (int e = 0; e < b->count && p->levered; e++)
+        for (int l = 0; l < LANES; l++)
+            if (p->dof_node[b->dof_node[e][l]].angular) return true;
+    return false;
 }
 
 // What entry e gives its node of an impulse.
@@ -144,12 +191,24 @@ static void weigh(const brunt_constraint_set *p, block *b) {
     b->scale = doubles_select(alone > zero, doubles_set(1) / alone, zero);
 }
 
+static bool fills(const brunt_constraint_set *p, int64_t k, block *b) {
+    const brunt_constraint *c = &p->constraint[k];
+    if (p->accelerated || k + LANES > p->constraint_count || c->count > BRUNT_BLOCK_ENTRIES) return false;
+    for (int l = 0; l < LANES; l++)
+        if (!fits(&c[l], c->count)) return false;
+    if (!take_constraints(c, b)) return false;
+    for (int e = 0; e < c->count; e++)
+        if (!take_entries(p, e, b)) return false;
+    b->count = c->count;
+    return !any_angular(p, b);
+}
+
 static void fill(const brunt_constraint_set *p, int64_t at) {
     block *b = &p->block[at];
-    b->count = are_alike(p, at * LANES) ? p->constraint[at * LANES].count : 0;
-    if (!b->count) return;
-    b->rubs = false;
-    for (int l = 0; l < LANES; l++) copy_lane(p, &p->constraint[at * LANES + l], l, b);
+    if (!fills(p, at * LANES, b)) {
+        b->count = 0;
+        return;
+    }
     brunt_block_take_back(b);
 }
 
@@ -188,14 +247,14 @@ void brunt_block_share(const brunt_constraint_set *p, block *b) {
     weigh(p, b);
     for (int e = 0; e < b->count; e++) {
         const doubles share = magnitude(b->weight[e]) + lever(p, b, e);
-        give(&g, e, share, share, share, b->scale);
+        part(&g.of[e], share, share, share, b->scale);
     }
     for (int l = 0; l < LANES; l++)
         for (int e = 0; e < b->count; e++) {
             const int32_t s = b->dof_node[e][l];
             const double *share = gift_of(&g, e, l);
             if (p->shared[s])
-                memcpy(p->given[b->first[l] + e], share, sizeof g.of[e][0]);
+                memcpy(p->given[b->first[l] + e], share, sizeof g.of[e].of[0]);
             else
                 p->load[s][0] += share[0] * share[3];
             b->shared = b->shared || p->shared[s];
@@ -207,12 +266,14 @@ void brunt_block_sum_rows(const brunt_constraint_set *p, block *b) {
     doubles along[3] = {{0}}, across[3] = {{0}}, row_sum = {0}, row_sum_t = {0};
     for (int e = 0; e < b->count; e++) {
         const doubles most = magnitude(b->weight[e]) + lever(p, b, e);
-        doubles inverse[3], load, load_t;
+        doubles inverse[3], load, load_t = {0};
         gather(p->inverse, b->dof_node[e], inverse);
         for (int l = 0; l < LANES; l++) {
             const double *node = p->load[b->dof_node[e][l]];
-            load[l] = node[0], load_t[l] = node[1];
+            load[l] = node[0];
+            if (p->friction_point_count) load_t[l] = node[1];
         }
+        if (!p->friction_point_count) load_t = load; // what pushes and what rubs are the same weights
         for (int a = 0; a < 3; a++) {
             along[a] += most * load * inverse[a];
             across[a] += most * load_t * inverse[a];
@@ -244,15 +305,15 @@ BRUNT_INLINE void relative_velocity(double (*of)[4], const block *b, int count, 
 
 // Brings slip to what friction allows, of velocity u, which is `along` the normal; the impulse is added to J. The
 // velocity it is worth.
-static inline doubles rub(block *b, const doubles u[3], doubles along, doubles J[3]) {
+static inline doubles rub(block *b, const doubles u[3], doubles along, doubles_mask awake, doubles J[3]) {
     const doubles zero = {0};
     doubles wanted[3], change[3], square = {0};
     for (int a = 0; a < 3; a++) wanted[a] = b->friction_impulse[a] - (u[a] - along * b->n[a]) * b->unit_t;
     for (int a = 0; a < 3; a++) square += wanted[a] * wanted[a];
     const doubles size = doubles_sqrt(square), limit = b->friction * b->normal_impulse;
-    b->slips = size > limit;
-    const doubles share = doubles_select(b->slips, limit / size, doubles_set(1));
-    const doubles_mask rubs = (b->friction > zero) & (b->scale > zero);
+    const doubles_mask slips = size > limit;
+    const doubles share = doubles_select(slips, limit / size, doubles_set(1));
+    const doubles_mask rubs = (b->friction > zero) & (b->scale > zero) & awake;
     square = zero;
     for (int a = 0; a < 3; a++) {
         const doubles now = share * wanted[a];
@@ -261,29 +322,59 @@ static inline doubles rub(block *b, const doubles u[3], doubles along, doubles J
         square += change[a] * change[a];
         J[a] = doubles_select(rubs, J[a] + change[a], J[a]);
     }
-    b->slips = b->slips & rubs;
+    b->slips = doubles_mask_select(awake, slips & rubs, b->slips);
     return doubles_sqrt(square) / b->unit_t;
 }
 
-BRUNT_INLINE double solve(const brunt_constraint_set *p, block *b, int count) {
+// Lanes that are not awake keep what they have.
+BRUNT_INLINE doubles solve(const brunt_constraint_set *p, block *b, int count, doubles_mask awake) {
     const doubles zero = {0};
     doubles u[3], J[3], along = {0};
     gifts g;
     relative_velocity(p->now, b, count, u);
     for (int a = 0; a < 3; a++) along += u[a] * b->n[a];
     const doubles asked = b->normal_impulse + (b->target - along) * b->unit;
-    const doubles now = doubles_select(b->scale > zero, doubles_max(asked, zero), zero);
+    const doubles least = doubles_select(b->scale > zero, doubles_max(asked, zero), zero);
+    const doubles now = doubles_select(awake, least, b->normal_impulse);
     const doubles step = now - b->normal_impulse;
     b->normal_impulse = now;
     for (int a = 0; a < 3; a++) J[a] = step * b->n[a];
     doubles changed = magnitude(step) / b->unit;
-    if (b->rubs) changed = doubles_max(rub(b, u, along, J), changed);
+    if (b->rubs) changed = doubles_max(rub(b, u, along, awake, J), changed);
     for (int e = 0; e < count; e++) {
         doubles out[3];
         transpose(b, e, J, out);
-        give(&g, e, out[0], out[1], out[2], out[2]); // whatever the fourth is: beside zeros gcc 12 writes one by one
+        part(&g.of[e], out[0], out[1], out[2], out[2]); // whatever the fourth is: beside zeros gcc 12 writes one by one
     }
     hand_out(p, b, count, &g);
+    return changed;
+}
+
+// Which constraints of a block do not rest (rest.h).
+BRUNT_INLINE doubles_mask find_awake(const brunt_constraint_set *p, const block *b, int count, doubles corrected) {
+    uint8_t stirred[LANES] = {0};
+    doubles_mask moved;
+    for (int e = 0; e < count; e++)
+        for (int l = 0; l < LANES; l++) stirred[l] |= p->stirred[b->dof_node[e][l]];
+    for (int l = 0; l < LANES; l++) moved[l] = -(int64_t)stirred[l];
+    return ~(corrected <= doubles_set(p->still)) | moved;
+}
+
+BRUNT_INLINE double sweep(const brunt_constraint_set *p, block *b, int count) {
+    const int64_t k = (b - p->block) * LANES;
+    const doubles corrected = doubles_load(&p->corrected[k]);
+    doubles_mask awake = doubles_set_mask(-1);
+    if (p->still > 0) {
+        awake = find_awake(p, b, count, corrected);
+        int64_t any = 0;
+        for (int l = 0; l < LANES; l++) any |= awake[l];
+        if (!any && !p->rests[k] && b->shared)
+            for (int l = 0; l < LANES; l++) brunt_constraint_gives_nothing(p, k + l);
+        p->rests[k] = !any;
+        if (!any) return 0;
+    }
+    const doubles changed = doubles_select(awake, solve(p, b, count, awake), corrected);
+    doubles_store(&p->corrected[k], changed);
     double greatest = 0;
     for (int l = 0; l < LANES; l++) greatest = changed[l] > greatest ? changed[l] : greatest;
     return greatest;
@@ -291,7 +382,7 @@ BRUNT_INLINE double solve(const brunt_constraint_set *p, block *b, int count) {
 
 // Nodes on quadrilaterals are the most: loops over their entries have no branches.
 double brunt_block_solve(const brunt_constraint_set *p, block *b) {
-    return b->count == BRUNT_BLOCK_ENTRIES ? solve(p, b, BRUNT_BLOCK_ENTRIES) : solve(p, b, b->count);
+    return b->count == BRUNT_BLOCK_ENTRIES ? sweep(p, b, BRUNT_BLOCK_ENTRIES) : sweep(p, b, b->count);
 }
 
 void brunt_block_take_back(block *b) {
@@ -302,11 +393,14 @@ void brunt_block_take_back(block *b) {
 
 void brunt_block_finish(brunt_constraint_set *p, int64_t at) {
     const block *b = &p->block[at];
+    fours push, rub;
+    part(&push, b->scale, b->row_sum, b->row_sum_t, b->normal_impulse);
+    part(&rub, b->friction_impulse[0], b->friction_impulse[1], b->friction_impulse[2], (doubles)b->slips);
     for (int l = 0; l < LANES; l++) {
         brunt_constraint *c = &p->constraint[at * LANES + l];
-        c->scale = b->scale[l], c->row_sum = b->row_sum[l], c->row_sum_t = b->row_sum_t[l];
-        c->normal_impulse = b->normal_impulse[l];
-        for (int a = 0; a < 3; a++) c->friction_impulse[a] = b->friction_impulse[a][l];
+        const double *one = four_of(&push, l);
+        c->scale = one[0], c->row_sum = one[1], c->row_sum_t = one[2], c->normal_impulse = one[3];
+        memcpy(c->friction_impulse, four_of(&rub, l), sizeof c->friction_impulse);
         c->slips = b->slips[l];
     }
 }
@@ -316,6 +410,10 @@ void brunt_block_rates(const brunt_constraint_set *p, int64_t at) {
     struct brunt_constraint_rates *rates = &p->rates[at * LANES];
     doubles old[3], now[3];
     relative_velocity(p->before, b, b->count, old), relative_velocity(p->now, b, b->count, now);
-    for (int l = 0; l < LANES; l++)
-        for (int a = 0; a < 3; a++) rates[l].old[a] = old[a][l], rates[l].now[a] = now[a][l];
+    fours before, after;
+    part(&before, old[0], old[1], old[2], old[2]), part(&after, now[0], now[1], now[2], now[2]);
+    for (int l = 0; l < LANES; l++) {
+        memcpy(rates[l].old, four_of(&before, l), sizeof rates[l].old);
+        memcpy(rates[l].now, four_of(&after, l), sizeof rates[l].now);
+    }
 }

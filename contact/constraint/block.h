@@ -12,14 +12,17 @@ typedef struct brunt_constraint_block {
     int32_t count; // entries of each; 0: they are not alike, and the rest is unused; BRUNT_NONE: not looked at yet
     bool rubs;     // some have friction
     bool shared;   // some of their nodes are
-    int32_t first[BRUNT_DOUBLES];
+    // What a sweep looks at comes first, and what it does only where friction is.
     int32_t dof_node[BRUNT_BLOCK_ENTRIES][BRUNT_DOUBLES];
     doubles weight[BRUNT_BLOCK_ENTRIES];             // of all components
     doubles height_gradient[BRUNT_BLOCK_MASTERS][3]; // of all entries but the first
-    doubles n[3], facet[3], target, friction, scale; // as those of the constraints
-    doubles row_sum, row_sum_t, unit, unit_t;        // [kg] `scale` by each row sum
-    doubles normal_impulse, friction_impulse[3];     // [N s]
+    doubles n[3], facet[3], target, scale;           // as those of the constraints
+    doubles unit;                                    // [kg] `scale` by the row sum
+    doubles normal_impulse;                          // [N s]
+    doubles friction, unit_t, friction_impulse[3];
     doubles_mask slips;
+    doubles row_sum, row_sum_t;
+    int32_t first[BRUNT_DOUBLES];
 } brunt_constraint_block;
 
 // Makes block b of constraints from b * BRUNT_DOUBLES on, unless they are not alike or that has been done.

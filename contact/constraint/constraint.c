@@ -51,6 +51,10 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->given);
     brunt_free(p->block);
     brunt_free(p->changed);
+    brunt_free(p->corrected);
+    brunt_free(p->rests);
+    brunt_free(p->drift);
+    brunt_free(p->stirred);
     brunt_free(p->point_past);
     brunt_free(p->dof_past);
     brunt_free(p->turned_back);

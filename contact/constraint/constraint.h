@@ -19,6 +19,10 @@
 // is scaled by its row sum of the coupling matrix (in units of its own effective mass), so that a uniform approach is
 // met in one sweep and no sweep can add energy. Neither the order of points nor the number of threads changes a bit.
 //
+// Of sweeps that are not accelerated, those that correct a point by less than a fiftieth of what ends them leave it out
+// from then on, until its nodes have drifted by as much (rest.h): where surfaces lie on each other two sweeps do for
+// most points, and rims take the rest.
+//
 // Accelerated sweeps (Nesterov 1983, with the restarts of O'Donoghue and Candes 2015; contact: Mazhar, Heyn, Negrut and
 // Tasora 2015) begin with a share of the last correction on top. Where touches are many to a node they need a
 // quarter of the sweeps.
@@ -144,6 +148,13 @@ typedef struct brunt_constraint_set {
     size_t rates_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
+    // Constraints that rest (rest.h).
+    double still;      // [m/s] the most that one which rests corrects, and that its nodes drift. 0: none rests
+    double *corrected; // [m/s] of each, when it was last swept over
+    bool *rests;       // of each; of a block all, as the first of them says
+    double *drift;     // [m/s] of each node since what is beside it was told
+    uint8_t *stirred;  // of each node: what is beside it is told
+    size_t corrected_capacity, rests_capacity, drift_capacity, stirred_capacity;
     double kick;            // [s] what springs push over
     bool gives_back;        // constraints have touches ...
     double leap;            // [m/s] ... what comes faster is lost: it would be thrown past what is near

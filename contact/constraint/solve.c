@@ -6,13 +6,16 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
+#include "contact/constraint/acceleration.h"
 #include "contact/constraint/block.h"
 #include "contact/constraint/parts.h"
 #include "contact/constraint/release.h"
+#include "contact/constraint/rest.h"
 
 enum { GRAIN = BRUNT_CONSTRAINT_GRAIN, AHEAD = 40 }; // AHEAD: entries that are fetched before a node adds them up
 _Static_assert(GRAIN % BRUNT_DOUBLES == 0, "a chunk is whole blocks");
-static const double DIVERGES = 10; // times the correction of the first sweep is left
+static const double DIVERGES = 10;  // times the correction of the first sweep is left
+static const double AT_REST = 0.02; // of the correction that ends the sweeps: what corrects less may rest
 
 // Three components, and one number that does not count: whatever follows them in memory.
 typedef double quad __attribute__((vector_size(32)));
@@ -375,7 +378,8 @@ static double sweep_constraint(brunt_constraint_set *p, int64_t k, double *back)
         from.normal_impulse = constraint->normal_impulse;
         memcpy(from.friction_impulse, constraint->friction_impulse, sizeof from.friction_impulse);
     }
-    const double changed = solve_constraint(p, constraint, J, rub);
+    if (p->still > 0 && brunt_constraint_rests(p, k)) return 0;
+    const double changed = p->corrected[k] = solve_constraint(p, constraint, J, rub);
     if (p->accelerated) *back += turned_back(constraint, &from, &p->point_past[k]);
     brunt_constraint_give(p, constraint, J, rub);
     return changed;
@@ -421,8 +425,13 @@ static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         const quad sum = p->shared[s] ? column_sum(p, s) : load_quad(p->sum[s]), zero = {0};
-        const quad now = load_quad(p->now[s]) + sum * load_quad(p->inverse[s]),
+        if (p->still > 0 && sum[0] == 0 && sum[1] == 0 && sum[2] == 0) {
+            p->stirred[s] = false;
+            continue;
+        }
+        const quad was = load_quad(p->now[s]), now = was + sum * load_quad(p->inverse[s]), by = now - was,
                    received = load_quad(p->received[s]) + sum;
+        if (p->still > 0) brunt_node_stirs(p, s, sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]));
         memcpy(p->sum[s], &zero, sizeof zero);
         memcpy(p->now[s], &now, sizeof now), memcpy(p->received[s], &received, sizeof received);
         if (p->accelerated) carry_on(p->momentum, p->now[s], p->received[s], &p->dof_past[s]);
@@ -490,34 +499,6 @@ static void account_constraints(brunt_constraint_set *p) {
     }
 }
 
-static int begin_acceleration(brunt_constraint_set *p, brunt_error *error) {
-    const size_t points = (size_t)p->constraint_count, dofs = (size_t)p->dof_node_count;
-    if (BRUNT_CAPACITY(p->point_past, points, 0, "contact points", error) ||
-        BRUNT_CAPACITY(p->dof_past, dofs + 1, 0, "nodes that contact moves", error) ||
-        BRUNT_CAPACITY(p->turned_back, points / GRAIN + 2, 0, "groups of contact points", error))
-        return BRUNT_FAILED;
-    p->momentum = 0;
-    memset(p->point_past, 0, points * sizeof *p->point_past);
-    for (size_t s = 0; s < dofs; s++) {
-        memcpy(p->dof_past[s].v, p->now[s], sizeof p->dof_past[s].v);
-        memcpy(p->dof_past[s].impulse, p->received[s], sizeof p->dof_past[s].impulse);
-    }
-    return BRUNT_OK;
-}
-
-// With how much of its correction the next sweep begins: none where the last one went back. The weight that follows.
-static double accelerate(brunt_constraint_set *p, int64_t chunks, double weight) {
-    double back = 0;
-    for (int64_t c = 0; c < chunks; c++) back += p->turned_back[c];
-    if (back > 0) {
-        p->momentum = 0;
-        return 1;
-    }
-    const double next = 0.5 * (1 + sqrt(1 + 4 * weight * weight));
-    p->momentum = (weight - 1) / next;
-    return next;
-}
-
 void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *timer) {
     brunt_parallel(threads, (p->dof_node_count + GRAIN - 1) / GRAIN, 1, move_dof_nodes, p, timer);
 }
@@ -549,7 +530,8 @@ static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int thre
     brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double start = 0, first = 0, greatest = INFINITY, weight = 1;
-    if (p->accelerated && begin_acceleration(p, error)) return BRUNT_FAILED;
+    if (p->accelerated && brunt_acceleration_begin(p, error)) return BRUNT_FAILED;
+    if (brunt_rest_begin(p, error)) return BRUNT_FAILED;
     p->sweeps = 0;
     while (p->sweeps < sweeps && !(greatest <= tolerance * first)) {
         brunt_constraints_over_parts(p, threads, solve_chunks, timer);
@@ -558,10 +540,12 @@ static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int thre
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
         first = fmax(first, greatest);
         if (p->sweeps == 1) start = first;
-        if (p->accelerated) weight = accelerate(p, chunks, weight);
+        p->still = p->accelerated ? 0 : AT_REST * tolerance * first;
+        if (p->accelerated) weight = brunt_acceleration_next(p, chunks, weight);
         if (p->sweeps == sweeps || greatest <= tolerance * first) p->momentum = 0;
         brunt_constraints_apply(p, threads, timer);
     }
+    p->still = 0;
     *converges = greatest <= DIVERGES * start;
     return BRUNT_OK;
 }
