@@ -191,8 +191,57 @@ static void weigh(const brunt_constraint_set *p, block *b) {
     b->scale = doubles_select(alone > zero, doubles_set(1) / alone, zero);
 }
 
-static bool fills(const brunt_constraint_set *p, int64_t k, block *b) {
+// Lanes are of several threads: a number at a time.
+static double *lane_of(doubles *of, int64_t k) { return (double *)of + k % LANES; }
+
+void brunt_constraints_lane(brunt_constraint_set *p, int32_t k, const brunt_constraint_entry *entry) {
+    block *b = &p->block[k / LANES];
+    brunt_constraint *c = &p->constraint[k];
+    b->first[k % LANES] = c->first;
+    for (int e = 0; e < c->count; e++) {
+        b->dof_node[e][k % LANES] = entry[e].dof_node;
+        *lane_of(&b->weight[e], k) = entry[e].weight[0];
+        for (int a = 0; a < 3 && e > 0; a++) *lane_of(&b->height_gradient[e - 1][a], k) = entry[e].height_gradient[a];
+    }
+    for (int a = 0; a < 3; a++) *lane_of(&b->n[a], k) = c->n[a], *lane_of(&b->facet[a], k) = c->facet[a];
+    *lane_of(&b->target, k) = c->target, *lane_of(&b->friction, k) = c->friction;
+    c->laned = true;
+}
+
+void brunt_block_write_entries(brunt_constraint_set *p, int64_t at) {
+    const block *b = &p->block[at];
+    for (int64_t k = at * LANES; k < (at + 1) * LANES && k < p->constraint_count; k++) {
+        brunt_constraint *c = &p->constraint[k];
+        const int l = (int)(k % LANES);
+        for (int e = 0; e < c->count && c->laned; e++) {
+            brunt_constraint_entry *entry = &p->entry[c->first + e];
+            entry->dof_node = b->dof_node[e][l];
+            for (int a = 0; a < 3; a++) {
+                entry->weight[a] = b->weight[e][l];
+                entry->height_gradient[a] = e > 0 ? b->height_gradient[e - 1][a][l] : 0;
+            }
+        }
+        c->laned = false;
+    }
+}
+
+// Whether all of a block is in its lanes, with as many entries each.
+static bool are_laned(const brunt_constraint *c) {
+    for (int l = 0; l < LANES; l++)
+        if (!c[l].laned || c[l].count != c->count) return false;
+    return true;
+}
+
+static bool fills(brunt_constraint_set *p, int64_t at, block *b) {
+    const int64_t k = at * LANES;
     const brunt_constraint *c = &p->constraint[k];
+    const doubles zero = {0};
+    if (!p->accelerated && k + LANES <= p->constraint_count && are_laned(c)) {
+        b->rubs = !all_lanes(~(b->friction > zero));
+        b->count = c->count;
+        return true;
+    }
+    if (at < p->open_blocks) brunt_block_write_entries(p, at);
     if (p->accelerated || k + LANES > p->constraint_count || c->count > BRUNT_BLOCK_ENTRIES) return false;
     for (int l = 0; l < LANES; l++)
         if (!fits(&c[l], c->count)) return false;
@@ -203,13 +252,12 @@ static bool fills(const brunt_constraint_set *p, int64_t k, block *b) {
     return !any_angular(p, b);
 }
 
-static void fill(const brunt_constraint_set *p, int64_t at) {
+static void fill(brunt_constraint_set *p, int64_t at) {
     block *b = &p->block[at];
-    if (!fills(p, at * LANES, b)) {
+    if (fills(p, at, b))
+        brunt_block_take_back(b);
+    else
         b->count = 0;
-        return;
-    }
-    brunt_block_take_back(b);
 }
 
 void brunt_block_make(brunt_constraint_set *p, int64_t at) {
@@ -217,8 +265,8 @@ void brunt_block_make(brunt_constraint_set *p, int64_t at) {
 }
 
 int brunt_constraints_open_blocks(brunt_constraint_set *p, brunt_error *error) {
-    const int32_t blocks = p->constraint_count / LANES;
-    if (BRUNT_CAPACITY(p->block, (size_t)blocks + 1, 0, "blocks of contact points", error)) return BRUNT_FAILED;
+    const int32_t blocks = p->constraint_count / LANES + 1;
+    if (BRUNT_CAPACITY(p->block, (size_t)blocks, 0, "blocks of contact points", error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < blocks; b++) p->block[b].count = BRUNT_NONE;
     p->open_blocks = blocks;
     return BRUNT_OK;

@@ -6,7 +6,7 @@
 #include "base/simd.h"
 #include "contact/constraint/constraint.h"
 
-enum { BRUNT_BLOCK_ENTRIES = 5, BRUNT_BLOCK_MASTERS = BRUNT_BLOCK_ENTRIES - 1 };
+enum { BRUNT_BLOCK_ENTRIES = BRUNT_LANE_ENTRIES, BRUNT_BLOCK_MASTERS = BRUNT_BLOCK_ENTRIES - 1 };
 
 typedef struct brunt_constraint_block {
     int32_t count; // entries of each; 0: they are not alike, and the rest is unused; BRUNT_NONE: not looked at yet
@@ -37,3 +37,11 @@ void brunt_block_take_back(brunt_constraint_block *block);
 void brunt_block_finish(brunt_constraint_set *set, int64_t b);
 // Makes the rates of the constraints of block b.
 void brunt_block_rates(const brunt_constraint_set *set, int64_t b);
+// The node of entry e of constraint k, wherever it is, once all blocks are made.
+static inline int32_t brunt_constraint_node(const brunt_constraint_set *set, int64_t k, int e) {
+    const brunt_constraint *constraint = &set->constraint[k];
+    return constraint->laned ? set->block[k / BRUNT_DOUBLES].dof_node[e][k % BRUNT_DOUBLES]
+                             : set->entry[constraint->first + e].dof_node;
+}
+// Writes the entries of the constraints of block b that are in its lanes alone.
+void brunt_block_write_entries(brunt_constraint_set *set, int64_t b);

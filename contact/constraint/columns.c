@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "contact/constraint/block.h"
 
 enum { GROUP = 1024, MAX_GROUPS = 8 };
 
@@ -27,8 +28,10 @@ static void count_entries(void *context, int64_t begin, int64_t end, int worker)
         for (int32_t k = (int32_t)g * size; k < (g + 1) * size && k < p->constraint_count; k++) {
             const brunt_constraint *constraint = &p->constraint[k];
             const int32_t each = constraint->friction_point ? 2 : 1;
-            for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++)
-                if (p->shared[p->entry[e].dof_node]) at[p->entry[e].dof_node] += each;
+            for (int e = 0; e < constraint->count; e++) {
+                const int32_t s = brunt_constraint_node(p, k, e);
+                if (p->shared[s]) at[s] += each;
+            }
         }
     }
 }
@@ -55,12 +58,13 @@ static void fill_columns(void *context, int64_t begin, int64_t end, int worker) 
         int32_t *at = p->column_at + g * p->dof_node_count;
         for (int32_t k = (int32_t)g * size; k < (g + 1) * size && k < p->constraint_count; k++) {
             const brunt_constraint *constraint = &p->constraint[k];
-            for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
-                if (!p->shared[p->entry[e].dof_node]) continue;
-                int32_t *next = &at[p->entry[e].dof_node];
-                p->column[(*next)++] = (struct brunt_constraint_column){k, e};
+            for (int e = 0; e < constraint->count; e++) {
+                const int32_t s = brunt_constraint_node(p, k, e);
+                if (!p->shared[s]) continue;
+                const int32_t entry = constraint->first + e;
+                p->column[at[s]++] = (struct brunt_constraint_column){k, entry};
                 if (constraint->friction_point)
-                    p->column[(*next)++] = (struct brunt_constraint_column){k, e + constraint->count};
+                    p->column[at[s]++] = (struct brunt_constraint_column){k, entry + constraint->count};
             }
         }
     }

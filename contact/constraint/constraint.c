@@ -7,16 +7,17 @@
 #include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "contact/constraint/block.h"
 
 void brunt_constraints_validate(const brunt_constraint_set *p) {
     for (int32_t s = 0; s < p->dof_node_count; s++)
         for (int a = 0; a < 3; a++) BRUNT_ASSERT(p->dof_node[s].inverse[a] >= 0);
-    for (int32_t e = 0; e < p->entry_count; e++)
-        BRUNT_ASSERT(p->entry[e].dof_node >= 0 && p->entry[e].dof_node < p->dof_node_count);
     for (int32_t k = 0; k < p->constraint_count; k++) {
         const brunt_constraint *c = &p->constraint[k];
         const int32_t end = c->first + (c->friction_point ? 2 : 1) * c->count;
         BRUNT_ASSERT(c->first >= 0 && c->count > 0 && end <= p->entry_count);
+        for (int e = 0; e < end - c->first; e++)
+            BRUNT_ASSERT(brunt_constraint_node(p, k, e) >= 0 && brunt_constraint_node(p, k, e) < p->dof_node_count);
         BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
         BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
         BRUNT_ASSERT(c->account && c->friction >= 0 && c->spring >= 0 && (c->spring > 0 || c->least <= 0));
@@ -51,6 +52,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->given);
     brunt_free(p->block);
     brunt_free(p->changed);
+    brunt_free(p->recorded);
     brunt_free(p->corrected);
     brunt_free(p->rests);
     brunt_free(p->drift);
@@ -59,6 +61,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->dof_past);
     brunt_free(p->turned_back);
     brunt_free(p->release);
+    brunt_free(p->kicks);
     memset(p, 0, sizeof *p);
 }
 

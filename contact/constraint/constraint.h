@@ -58,6 +58,7 @@ typedef struct brunt_touch_energy {
 } brunt_touch_energy;
 
 typedef struct brunt_release brunt_release; // release.c
+typedef struct brunt_kick brunt_kick;       // release.c
 
 typedef struct brunt_constraint {
     int32_t first, count;           // entries
@@ -86,7 +87,10 @@ typedef struct brunt_constraint {
     double normal_impulse, friction_impulse[3]; // [N s]
     bool slips;
     bool turns; // with its facet: some entry has a height gradient
+    bool laned; // its entries are in its lane of its block, and nowhere else
 } brunt_constraint;
+
+enum { BRUNT_RECORDED_ACCOUNTS = 4 }; // of a chunk of points that are added up apart
 
 typedef struct brunt_constraint_set {
     brunt_constraint *constraint;
@@ -141,11 +145,17 @@ typedef struct brunt_constraint_set {
     size_t given_capacity;
     struct brunt_constraint_block *block; // of so many constraints at a time, where they are alike (block.h)
     size_t block_capacity;
-    int32_t open_blocks; // so many may have been made as their constraints were filled
+    int32_t open_blocks; // so many may have been made as their constraints were filled, or have lanes
     struct brunt_constraint_rates {
         double old[3], now[3]; // [m/s] relative velocity where it pushes, before the forces and now
     } * rates;                 // of each constraint, once it is solved
     size_t rates_capacity;
+    struct brunt_recorded {
+        int count;          // accounts
+        int32_t first_left; // point from which on there were too many accounts; -1: none
+        brunt_impulse_account *account[BRUNT_RECORDED_ACCOUNTS], sum[BRUNT_RECORDED_ACCOUNTS];
+    } * recorded; // of each chunk of points: what they have done (accounts.h)
+    size_t recorded_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
     // Constraints that rest (rest.h).
@@ -160,7 +170,8 @@ typedef struct brunt_constraint_set {
     double leap;            // [m/s] ... what comes faster is lost: it would be thrown past what is near
     double shallow;         // [m] ... what is deeper is given nothing back until it is out again
     brunt_release *release; // of each
-    size_t release_capacity;
+    brunt_kick *kicks;      // of each, while some give back
+    size_t release_capacity, kicks_capacity;
     // Of accelerated sweeps, else unused: what points and nodes had after the sweep before, and of each chunk how much
     // of its correction goes back on the last one's (see solve.c).
     bool accelerated;
@@ -197,9 +208,15 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double
 int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count, int32_t dof_count,
                               brunt_error *error);
 // What is filled in then, in any order and by several threads, may go to its blocks at once, while it is at hand: none
-// has yet; BRUNT_OK, or BRUNT_FAILED: out of memory. And constraints first .. end are complete and stay as they are, of
-// which those before `first` that it returns, a multiple of a block's, are done with.
+// has yet; BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_constraints_open_blocks(brunt_constraint_set *set, brunt_error *error);
+// Entries of constraint k, which is complete but for them and stays as it is, pushes, and is on a facet or on what
+// stands still: to its lane of its block, not to `entry`, if it has no more than BRUNT_LANE_ENTRIES, of weights that
+// are those of all components, and the first is the slave's.
+enum { BRUNT_LANE_ENTRIES = 5 };
+void brunt_constraints_lane(brunt_constraint_set *set, int32_t k, const brunt_constraint_entry *entry);
+// And constraints first .. end are complete, of which those before `first` that it returns, a multiple of a block's,
+// are done with.
 int32_t brunt_constraints_fill_blocks(brunt_constraint_set *set, int32_t first, int32_t end);
 // Whether a point has given an impulse: what lets go only by pushing.
 static inline bool brunt_constraint_acts(const brunt_constraint *constraint) {
@@ -208,6 +225,8 @@ static inline bool brunt_constraint_acts(const brunt_constraint *constraint) {
 // Relative velocity of a point, with the degree-of-freedom nodes' v (old: as they were before the forces).
 void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old,
                                double u[3]);
+// The same where its friction point is, of one that has one.
+void brunt_constraint_slip(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old, double u[3]);
 // What friction does to a constraint with the normal impulse it has, as far as it is concerned; added to `rub`.
 void brunt_constraint_rub(const brunt_constraint_set *set, brunt_constraint *constraint, double rub[3]);
 // Gives a constraint's nodes an impulse where it pushes and one where it rubs, which without a friction point is part

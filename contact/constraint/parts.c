@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "contact/constraint/block.h"
 #include "contact/constraint/columns.h"
 
 enum { GRAIN = BRUNT_CONSTRAINT_GRAIN, LEAST_CHUNKS = 4 }; // LEAST_CHUNKS: that are worth a thread
@@ -76,9 +77,7 @@ static void mark_nodes(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t c = begin; c < end; c++) {
         uint8_t *mark = p->marks + (size_t)p->part_of[c] * (size_t)p->dof_node_count;
         for (int64_t k = c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k++) {
-            const brunt_constraint *constraint = &p->constraint[k];
-            for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++)
-                mark[p->entry[e].dof_node] = 1;
+            for (int e = 0; e < p->constraint[k].count; e++) mark[brunt_constraint_node(p, k, e)] = 1;
         }
     }
 }

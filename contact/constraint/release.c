@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/vector.h"
+#include "contact/constraint/block.h"
 #include "contact/constraint/parts.h"
 
 enum { GRAIN = 128, ROUNDS = 16 };
@@ -14,17 +15,24 @@ static const double LEAST_MOTION = 1e-6; // of the energy of its motion, whichev
 static const double LEAST_LEFT = 1e-3;   // of what was held
 static const double LAST_LEFT = 0.01;    // of what all hold: rounds end
 
-// What a touch does in a step, of each constraint that has one.
+// What a touch does in a step, of each constraint: by itself, since most steps look at no more of them.
 struct brunt_release {
+    brunt_touch_energy *touch; // the constraint's
+    double taken;              // [J] by its push
+    double alone;              // [J] what it would take of its own mass alone
+    bool pushes;               // by more than rounding, as of what slides along a wall
+    bool may;                  // one that does not push may give back
+    bool settled;              // it releases
+};
+
+// What a touch gives back.
+struct brunt_kick {
     double impulse; // [N s] given back
     double work;    // [J] of it, beyond what the pushes would have done without
-    bool settled;   // it releases
-    bool pushes;    // by more than rounding, as of what slides along a wall
     double pressed; // [m/s] by how much the pushes of the step have changed u_n
-    double taken;   // [J] by its push
-    double alone;   // [J] what it would take of its own mass alone
     double left;    // [J] of what it is to give back; below 0: too much was given, since others gave beside it
 };
+typedef brunt_kick kick;
 
 static double along(const brunt_constraint_set *p, const brunt_constraint *c, bool old) {
     double u[3];
@@ -46,53 +54,46 @@ static double pressed(const brunt_constraint_set *p, const brunt_constraint *c) 
     return sum;
 }
 
-static void note_taken(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
-        const brunt_constraint *c = &p->constraint[k];
-        brunt_release *r = &p->release[k];
-        *r = (brunt_release){0};
-        if (!c->touch || !(c->normal_impulse > 0)) continue;
-        const double *old = p->rates[k].old, *now = p->rates[k].now;
-        const double motion = dot(old, old) + dot(now, now), J = c->normal_impulse;
-        r->pushes = J > LEAST_PUSH * c->scale * sqrt(motion);
-        r->alone = 0.5 * fmax(J * J / c->scale, LEAST_MOTION * c->scale * motion);
-        if (r->pushes && dot(old, c->n) > -p->leap) r->taken = -0.5 * J * (dot(old, c->n) + dot(now, c->n));
-    }
+int brunt_release_begin(brunt_constraint_set *p, brunt_error *error) {
+    return BRUNT_CAPACITY(p->release, (size_t)p->constraint_count, 0, "contact points", error);
 }
 
-// Whether one that does not push may give back, and whether it does.
-static bool may_release(const brunt_constraint_set *p, const brunt_constraint *c) {
-    return c->scale > 0 && c->gap >= -p->shallow;
+void brunt_release_note(brunt_constraint_set *p, int64_t k) {
+    const brunt_constraint *c = &p->constraint[k];
+    brunt_release *r = &p->release[k];
+    *r = (brunt_release){.touch = c->touch, .may = c->scale > 0 && c->gap >= -p->shallow};
+    if (!c->touch || !(c->normal_impulse > 0)) return;
+    const double *old = p->rates[k].old, *now = p->rates[k].now;
+    const double motion = dot(old, old) + dot(now, now), J = c->normal_impulse;
+    r->pushes = J > LEAST_PUSH * c->scale * sqrt(motion);
+    r->alone = 0.5 * fmax(J * J / c->scale, LEAST_MOTION * c->scale * motion);
+    if (r->pushes && dot(old, c->n) > -p->leap) r->taken = -0.5 * J * (dot(old, c->n) + dot(now, c->n));
 }
-static bool releases(const brunt_constraint_set *p, const brunt_constraint *c) {
-    return c->touch && !c->touch->pushed && c->touch->held > 0 && may_release(p, c);
-}
+
+// Whether one gives back.
+static bool releases(const brunt_release *r) { return r->touch && !r->touch->pushed && r->touch->held > 0 && r->may; }
 
 // Books what pushes have taken. Whether anything is to be given back.
 static bool account_touches(brunt_constraint_set *p) {
     bool any = false;
-    for (int32_t k = 0; k < p->constraint_count; k++)
-        if (p->constraint[k].touch)
-            *p->constraint[k].touch = (brunt_touch_energy){.held = p->constraint[k].touch->held};
-    for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_constraint *c = &p->constraint[k];
-        if (!c->touch) continue;
-        c->touch->met++;
-        if (p->release[k].pushes) {
-            c->touch->pushed = true;
-            c->touch->held += p->release[k].taken;
-            c->touch->alone = fmax(c->touch->alone, p->release[k].alone);
-        } else if (may_release(p, c)) {
-            c->touch->releases++;
+    const brunt_release *end = p->release + p->constraint_count;
+    for (const brunt_release *r = p->release; r < end; r++)
+        if (r->touch) *r->touch = (brunt_touch_energy){.held = r->touch->held};
+    for (const brunt_release *r = p->release; r < end; r++) {
+        if (!r->touch) continue;
+        r->touch->met++;
+        if (r->pushes) {
+            r->touch->pushed = true;
+            r->touch->held += r->taken;
+            r->touch->alone = fmax(r->touch->alone, r->alone);
+        } else if (r->may) {
+            r->touch->releases++;
         }
     }
-    for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_constraint *c = &p->constraint[k];
+    for (const brunt_release *r = p->release; r < end; r++) {
         // What presses without an approach takes rounding alone, the root of which would be a kick.
-        if (c->touch && c->touch->held > 0 && c->touch->held < LEAST_TAKEN * c->touch->alone) c->touch->held = 0;
-        any = any || releases(p, c);
+        if (r->touch && r->touch->held > 0 && r->touch->held < LEAST_TAKEN * r->touch->alone) r->touch->held = 0;
+        any = any || releases(r);
     }
     return any;
 }
@@ -103,11 +104,9 @@ static double payable(const brunt_impulse_account *account) {
 }
 
 // Whether a constraint gives back, or owes; and its share of what its touch holds or owes.
-static bool is_settled(const brunt_constraint_set *p, const brunt_constraint *c) {
-    return releases(p, c) || (c->touch && c->touch->held < 0);
-}
-static double share(const brunt_constraint_set *p, const brunt_constraint *c) {
-    return c->touch->held / (releases(p, c) ? c->touch->releases : c->touch->met);
+static bool is_settled(const brunt_release *r) { return releases(r) || (r->touch && r->touch->held < 0); }
+static double share(const brunt_release *r) {
+    return r->touch->held / (releases(r) ? r->touch->releases : r->touch->met);
 }
 
 // What is left, of each constraint, of each pair and in all.
@@ -116,10 +115,11 @@ static double sum_left(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->constraint_count; k++)
         p->constraint[k].account->unspent = p->constraint[k].account->overspent = 0;
     for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_constraint *c = &p->constraint[k];
-        if (!is_settled(p, c)) continue;
-        const double left = p->release[k].left = share(p, c) - p->release[k].work;
-        *(left > 0 ? &c->account->unspent : &c->account->overspent) += fabs(left);
+        const brunt_release *r = &p->release[k];
+        if (!is_settled(r)) continue;
+        brunt_impulse_account *account = p->constraint[k].account;
+        const double left = p->kicks[k].left = share(r) - p->kicks[k].work;
+        *(left > 0 ? &account->unspent : &account->overspent) += fabs(left);
         all += fmax(left, 0);
     }
     return all;
@@ -127,16 +127,23 @@ static double sum_left(brunt_constraint_set *p) {
 
 // The impulse with which what is left of a constraint is given back, and its friction: that its work, as far as all
 // give alike, is that.
-static void kick(const brunt_constraint_set *p, brunt_constraint *c, brunt_release *r, double push[3], double rub[3]) {
-    if (!releases(p, c)) return;
-    const double unit = c->scale / c->row_sum, left = payable(c->account) * r->left;
+static void give_back(const brunt_constraint_set *p, brunt_constraint *c, kick *given, double push[3], double rub[3]) {
+    const double unit = c->scale / c->row_sum, left = payable(c->account) * given->left;
     if (!(left > 0)) return;
-    if (!(r->impulse > 0)) r->pressed = pressed(p, c);
-    const double b = along(p, c, true) + along(p, c, false) + r->pressed + r->impulse / unit;
+    if (!(given->impulse > 0)) given->pressed = pressed(p, c);
+    const double b = along(p, c, true) + along(p, c, false) + given->pressed + given->impulse / unit;
     const double J = 0.5 * unit * (sqrt(b * b + 8 * left / unit) - b);
-    c->normal_impulse = r->impulse += J;
+    c->normal_impulse = given->impulse += J;
     for (int a = 0; a < 3; a++) push[a] = J * c->n[a];
     if (c->friction > 0) brunt_constraint_rub(p, c, rub);
+}
+
+// Kicks go over single constraints.
+static void write_entries(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
+        brunt_block_write_entries(p, k / BRUNT_DOUBLES);
 }
 
 static void give(void *context, int64_t begin, int64_t end, int worker) {
@@ -144,9 +151,8 @@ static void give(void *context, int64_t begin, int64_t end, int worker) {
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         brunt_constraint *c = &p->constraint[k];
-        brunt_release *r = &p->release[k];
         double push[3] = {0}, apart[3] = {0};
-        kick(p, c, r, push, c->friction_point ? apart : push);
+        if (releases(&p->release[k])) give_back(p, c, &p->kicks[k], push, c->friction_point ? apart : push);
         brunt_constraint_give(p, c, push, apart);
     }
 }
@@ -156,8 +162,9 @@ static void note_work(void *context, int64_t begin, int64_t end, int worker) {
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         const brunt_constraint *c = &p->constraint[k];
-        brunt_release *r = &p->release[k];
-        if (r->impulse > 0) r->work = 0.5 * r->impulse * (along(p, c, true) + along(p, c, false) + r->pressed);
+        kick *given = &p->kicks[k];
+        if (given->impulse > 0)
+            given->work = 0.5 * given->impulse * (along(p, c, true) + along(p, c, false) + given->pressed);
     }
 }
 
@@ -165,31 +172,34 @@ static void note_work(void *context, int64_t begin, int64_t end, int worker) {
 static void settle(brunt_constraint_set *p) {
     sum_left(p);
     for (int32_t k = 0; k < p->constraint_count; k++) {
-        brunt_constraint *c = &p->constraint[k];
-        const brunt_impulse_account *a = c->account;
+        const brunt_impulse_account *a = p->constraint[k].account;
         brunt_release *r = &p->release[k];
-        r->settled = is_settled(p, c);
+        double *left = &p->kicks[k].left;
+        r->settled = is_settled(r);
         if (!r->settled) continue;
-        if (r->left < 0)
-            r->left *= a->overspent > a->unspent ? 1 - a->unspent / a->overspent : 0;
+        if (*left < 0)
+            *left *= a->overspent > a->unspent ? 1 - a->unspent / a->overspent : 0;
         else
-            r->left *= payable(a);
-        if (fabs(r->left) < LEAST_LEFT * fabs(c->touch->held)) r->left = 0;
+            *left *= payable(a);
+        if (fabs(*left) < LEAST_LEFT * fabs(r->touch->held)) *left = 0;
     }
     for (int32_t k = 0; k < p->constraint_count; k++)
-        if (p->release[k].settled) p->constraint[k].touch->held = 0;
+        if (p->release[k].settled) p->release[k].touch->held = 0;
     for (int32_t k = 0; k < p->constraint_count; k++)
-        if (p->release[k].settled) p->constraint[k].touch->held += p->release[k].left;
+        if (p->release[k].settled) p->release[k].touch->held += p->kicks[k].left;
 }
 
 int brunt_constraints_release(brunt_constraint_set *p, bool *gave, int threads, brunt_timer *timer,
                               brunt_error *error) {
     *gave = false;
-    if (BRUNT_CAPACITY(p->release, (size_t)p->constraint_count, 0, "contact points", error)) return BRUNT_FAILED;
-    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
-    brunt_parallel(threads, chunks, 1, note_taken, p, timer);
     if (!account_touches(p)) return BRUNT_OK;
-    if (brunt_constraints_share_all(p, threads, timer, error)) return BRUNT_FAILED;
+    const size_t count = (size_t)p->constraint_count;
+    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
+    if (BRUNT_CAPACITY(p->kicks, count, 0, "contact points", error) ||
+        brunt_constraints_share_all(p, threads, timer, error))
+        return BRUNT_FAILED;
+    brunt_parallel(threads, chunks, 1, write_entries, p, timer);
+    memset(p->kicks, 0, count * sizeof *p->kicks);
     *gave = true;
     double held = 0;
     for (int round = 0; round < ROUNDS; round++) {

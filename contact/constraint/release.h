@@ -8,7 +8,11 @@
 
 #include "contact/constraint/constraint.h"
 
-// After the sweeps of a set whose constraints have touches, and their rates. `*gave`: something was given back, so that
+// Room for what touches do. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_release_begin(brunt_constraint_set *set, brunt_error *error);
+// Notes what the push of constraint k has taken, after the sweeps and with its rates.
+void brunt_release_note(brunt_constraint_set *set, int64_t k);
+// When that of all is noted. `*gave`: something was given back, so that
 // the rates are others now. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_constraints_release(brunt_constraint_set *set, bool *gave, int threads, brunt_timer *timer,
                               brunt_error *error);

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "contact/constraint/block.h"
 
 int brunt_rest_begin(brunt_constraint_set *p, brunt_error *error) {
     const size_t points = (size_t)p->constraint_count + 1, nodes = (size_t)p->dof_node_count + 1;
@@ -26,9 +27,9 @@ int brunt_rest_begin(brunt_constraint_set *p, brunt_error *error) {
 
 void brunt_constraint_gives_nothing(const brunt_constraint_set *p, int64_t k) {
     const brunt_constraint *constraint = &p->constraint[k];
-    const int32_t entries = (constraint->friction_point ? 2 : 1) * constraint->count;
-    for (int32_t e = constraint->first; e < constraint->first + entries; e++)
-        if (p->shared[p->entry[e].dof_node]) memset(p->given[e], 0, sizeof *p->given);
+    const int entries = (constraint->friction_point ? 2 : 1) * constraint->count;
+    for (int e = 0; e < entries; e++)
+        if (p->shared[brunt_constraint_node(p, k, e)]) memset(p->given[constraint->first + e], 0, sizeof *p->given);
 }
 
 bool brunt_constraint_rests(const brunt_constraint_set *p, int64_t k) {

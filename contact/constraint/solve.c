@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/parallel.h"
 #include "contact/constraint/acceleration.h"
+#include "contact/constraint/accounts.h"
 #include "contact/constraint/block.h"
 #include "contact/constraint/parts.h"
 #include "contact/constraint/release.h"
@@ -68,6 +69,10 @@ void brunt_constraint_velocity(const brunt_constraint_set *p, const brunt_constr
     velocity(p, constraint, constraint->first, old, u);
 }
 
+void brunt_constraint_slip(const brunt_constraint_set *p, const brunt_constraint *constraint, bool old, double u[3]) {
+    velocity(p, constraint, constraint->first + constraint->count, old, u);
+}
+
 // What an entry gives its degree-of-freedom node of the point's impulse: the transpose of the above.
 static void apply_transpose(const brunt_constraint *constraint, const brunt_constraint_entry *entry, const double J[3],
                             double out[3]) {
@@ -100,7 +105,9 @@ static int reserve_sweeps(brunt_constraint_set *p, brunt_error *error) {
                    BRUNT_CAPACITY(p->load, nodes, 0, "nodes that contact moves", error) ||
                    BRUNT_CAPACITY(p->block, points / BRUNT_DOUBLES + 1, (size_t)p->open_blocks,
                                   "blocks of contact points", error) ||
-                   BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error)
+                   BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error) ||
+                   BRUNT_CAPACITY(p->recorded, points / GRAIN + 2, 0, "groups of contact points", error) ||
+                   (p->gives_back && brunt_release_begin(p, error))
                ? BRUNT_FAILED
                : BRUNT_OK;
 }
@@ -438,14 +445,6 @@ static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
-// Velocities of a constraint before and after, against its plane, as the account's sign has them.
-static void account_velocity(const brunt_constraint *constraint, double sign, double old[3], double now[3]) {
-    for (int a = 0; a < 3; a++) {
-        old[a] = sign * (old[a] + constraint->plane[a]);
-        now[a] = sign * (now[a] + constraint->plane[a]);
-    }
-}
-
 static void rate_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
@@ -459,44 +458,21 @@ static void rate_chunks(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-// What sweeps have come to, back to the constraints, with their rates.
+// What has been done, with its rates, to the accounts.
+static void account_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    brunt_constraint_set *p = context;
+    rate_chunks(context, begin, end, worker);
+    for (int64_t c = begin; c < end; c++) brunt_constraints_record(p, c);
+}
+
+// What sweeps have come to, back to the constraints.
 static void finish_chunks(void *context, int64_t begin, int64_t end, int worker) {
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
         if (block_at(p, k)) brunt_block_finish(p, k / BRUNT_DOUBLES);
-    rate_chunks(context, begin, end, worker);
-}
-
-static void account_constraints(brunt_constraint_set *p) {
-    for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_constraint *constraint = &p->constraint[k];
-        if (!brunt_constraint_acts(constraint)) continue;
-        constraint->account->area += constraint->area;
-        constraint->account->spring += 0.5 * constraint->spring * pow(fmin(0, constraint->gap), 2);
-        // The account is of the second body: the slave's impulse, or the reaction to it; within one body there are
-        // both.
-        brunt_impulse_account within = {.area = 0}, *account = constraint->sign == 0 ? &within : constraint->account;
-        const double sign = constraint->sign == 0 ? 1 : constraint->sign;
-        double old[3], now[3], normal_impulse[3], friction_impulse[3], x[3];
-        memcpy(old, p->rates[k].old, sizeof old), memcpy(now, p->rates[k].now, sizeof now);
-        account_velocity(constraint, sign, old, now);
-        for (int a = 0; a < 3; a++) {
-            normal_impulse[a] = sign * constraint->normal_impulse * constraint->n[a],
-            friction_impulse[a] = sign * constraint->friction_impulse[a];
-            x[a] = constraint->x[a];
-        }
-        brunt_impulse_account_record(account, &constraint->account->normal_loss, normal_impulse, x, old, now,
-                                     constraint->plane);
-        if (constraint->friction_point) {
-            velocity(p, constraint, constraint->first + constraint->count, true, old);
-            velocity(p, constraint, constraint->first + constraint->count, false, now);
-            account_velocity(constraint, sign, old, now);
-            for (int a = 0; a < 3; a++) x[a] = p->friction_point[constraint->friction_point - 1].x[a];
-        }
-        if (constraint->friction > 0)
-            brunt_impulse_account_record(account, &constraint->account->friction_loss, friction_impulse, x, old, now,
-                                         constraint->plane);
-    }
+    account_chunks(context, begin, end, worker);
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count && p->gives_back; k++)
+        brunt_release_note(p, k);
 }
 
 void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *timer) {
@@ -555,11 +531,12 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     bool converges;
     p->sweeps = 0, p->levers = false;
     if (!p->constraint_count) return BRUNT_OK;
-    if (brunt_constraints_make_parts(p, threads, timer, error) || reserve_sweeps(p, error)) return BRUNT_FAILED;
+    if (reserve_sweeps(p, error)) return BRUNT_FAILED;
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
     p->now = p->state, p->levered = false;
     brunt_parallel(threads, groups, 1, begin_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, make_blocks, p, timer);
+    if (brunt_constraints_make_parts(p, threads, timer, error)) return BRUNT_FAILED;
     if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     if (!converges) {
         take_back(p);
@@ -571,9 +548,9 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     if (p->gives_back) {
         bool gave;
         if (brunt_constraints_release(p, &gave, threads, timer, error)) return BRUNT_FAILED;
-        if (gave) brunt_parallel(threads, chunks, 1, rate_chunks, p, timer);
+        if (gave) brunt_parallel(threads, chunks, 1, account_chunks, p, timer);
     }
-    account_constraints(p);
+    brunt_constraints_account(p);
     brunt_parallel(threads, groups, 1, end_nodes, p, timer);
     p->now = NULL;
     return BRUNT_OK;

@@ -214,13 +214,15 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
             brunt_node_to_facet_constraint(m, h, s->x[n], s->body[n], constraint);
             constraint->area =
                 0.5 * brunt_node_to_facet_area(s, n, h->n); // the other half is counted on the other side
-            j->constraints->entry[entry] =
-                (brunt_constraint_entry){.dof_node = f->nodes.dof_of[n], .weight = {1, 1, 1}};
-            brunt_node_to_facet_entries(f, master, constraint, j->constraints->entry + entry + 1);
+            brunt_constraint_entry lane[BRUNT_LANE_ENTRIES],
+                *to = constraint->count <= BRUNT_LANE_ENTRIES ? lane : &j->constraints->entry[entry];
+            to[0] = (brunt_constraint_entry){.dof_node = f->nodes.dof_of[n], .weight = {1, 1, 1}};
+            brunt_node_to_facet_entries(f, master, constraint, to + 1);
             constraint->target = h->target;
             // Not of membranes: what is light between heavy ones is thrown through.
             if (!is_membrane(s, s->body[n]) && !is_membrane(s, h->body))
                 constraint->touch = brunt_node_touch(&f->touches, n, TOUCHED_FACET);
+            if (to == lane) brunt_constraints_lane(j->constraints, at, lane);
             entry += constraint->count;
         }
         filled = brunt_constraints_fill_blocks(j->constraints, filled, at);

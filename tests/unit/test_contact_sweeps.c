@@ -378,6 +378,114 @@ START_TEST(what_rests_is_at_its_condition) {
 }
 END_TEST
 
+// A set whose entries are in the lanes of its blocks, all or `some` of them: nowhere else is what they are.
+static void put_in_lanes(brunt_constraint_set *p, bool some) {
+    ck_assert_int_eq(brunt_constraints_open_blocks(p, NULL), BRUNT_OK);
+    for (int k = 0; k < p->constraint_count; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        if (c->count > BRUNT_LANE_ENTRIES || (some && k / 8 % 3 == 1 && k % 8 == 5)) continue;
+        brunt_constraints_lane(p, k, &p->entry[c->first]);
+        memset(&p->entry[c->first], 0x7f, (size_t)c->count * sizeof *p->entry);
+        if (k % 40 == 39) brunt_constraints_fill_blocks(p, k - 39 + 4, k + 1); // the rest when it is solved
+    }
+}
+
+// Solves a crowd, and makes it anew in its place: what one step leaves behind is nothing to the next.
+static void solve_before(brunt_constraint_set *p, brunt_impulse_account *account, brunt_touch_energy *touch) {
+    brunt_timer timer = {0};
+    ck_assert_int_eq(brunt_constraints_solve(p, 8, 1e-9, 1, &timer, NULL), BRUNT_OK);
+    brunt_constraint_set anew;
+    make_crowd(&anew, account, touch);
+    memcpy(p->constraint, anew.constraint, (size_t)p->constraint_count * sizeof *p->constraint);
+    memcpy(p->entry, anew.entry, (size_t)p->entry_count * sizeof *p->entry);
+    memcpy(p->dof_node, anew.dof_node, (size_t)p->dof_node_count * sizeof *p->dof_node);
+    brunt_constraints_free(&anew);
+}
+
+// Where entries are changes nothing: whatever part of a block is in lanes, and whether kicks go over single points.
+START_TEST(lanes_do_as_entries) {
+    static brunt_touch_energy touch[2][MANY];
+    for (int k = 0; k < 16; k++) {
+        brunt_constraint_set one, lane;
+        brunt_impulse_account account[2];
+        brunt_timer timer = {0};
+        make_crowd(&one, &account[0], touch[0]), make_crowd(&lane, &account[1], touch[1]);
+        one.gives_back = lane.gives_back = k & 1;
+        if (k == 1) solve_before(&lane, &account[1], touch[1]);
+        for (int i = 0; i < MANY; i++) one.constraint[i].target = lane.constraint[i].target = 0.1 * some(i);
+        // In some blocks one point has fewer entries.
+        for (int i = 0; i < MANY && k & 8; i += 24) one.constraint[i].count = lane.constraint[i].count = 4;
+        put_in_lanes(&lane, k & 2);
+        const int threads = k & 4 ? 3 : 1;
+        ck_assert_int_eq(brunt_constraints_solve(&one, 8, 1e-9, threads, &timer, NULL), BRUNT_OK);
+        ck_assert_int_eq(brunt_constraints_solve(&lane, 8, 1e-9, threads, &timer, NULL), BRUNT_OK);
+        brunt_constraints_validate(&lane);
+        for (int s = 0; s < one.dof_node_count; s++)
+            ck_assert_mem_eq(one.dof_node[s].v, lane.dof_node[s].v, sizeof one.dof_node[s].v);
+        for (int i = 0; i < MANY; i++) ck_assert(touch[0][i].held == touch[1][i].held);
+        ck_assert_mem_eq(&account[0], &account[1], sizeof account[0]);
+        brunt_constraints_free(&one), brunt_constraints_free(&lane);
+    }
+}
+END_TEST
+
+// However many accounts the points have, one after the other, all get what is theirs, the same for any number of
+// threads.
+START_TEST(each_account_gets_what_is_its_own) {
+    static brunt_touch_energy touch[MANY];
+    enum { MOST = 9 };
+    for (int many = 1; many <= MOST; many++) {
+        brunt_impulse_account account[2][MOST] = {{{.area = 0}}};
+        double areas[MOST] = {0}, pushed[MOST] = {0};
+        for (int i = 0; i < 2; i++) {
+            brunt_constraint_set p;
+            brunt_impulse_account all;
+            brunt_timer timer = {0};
+            make_crowd(&p, &all, touch), p.gives_back = false;
+            for (int k = 0; k < MANY; k++)
+                p.constraint[k].account = &account[i][k / (1 + many % 3) % many], p.constraint[k].area = some(k);
+            ck_assert_int_eq(brunt_constraints_solve(&p, 8, 1e-9, i ? 3 : 1, &timer, NULL), BRUNT_OK);
+            for (int k = 0; k < MANY && !i; k++) {
+                const brunt_constraint *c = &p.constraint[k];
+                if (!(c->normal_impulse > 0)) continue;
+                areas[c->account - account[0]] += c->area;
+                pushed[c->account - account[0]] += c->normal_impulse * c->n[2] + c->friction_impulse[2];
+            }
+            brunt_constraints_free(&p);
+        }
+        ck_assert_mem_eq(account[0], account[1], sizeof account[0]);
+        for (int k = 0; k < many; k++) {
+            ck_assert(areas[k] > 0);
+            ck_assert_double_eq_tol(account[0][k].area, areas[k], 1e-12 * areas[k]);
+            ck_assert_double_eq_tol(account[0][k].impulse[2], pushed[k], 1e-12 * pushed[k]);
+        }
+    }
+}
+END_TEST
+
+// A push takes what came before the forces of the step, not what they bring: what only presses takes rounding alone.
+START_TEST(what_presses_holds_nothing) {
+    static const double came[] = {1, 0.1, 1e-6, 1e-15, 0};
+    for (int k = 0; k < 5; k++) {
+        brunt_constraint_set p = {.gives_back = true, .leap = 10, .shallow = 1};
+        brunt_impulse_account account = {.area = 0};
+        brunt_touch_energy touch = {.held = 0};
+        brunt_timer timer = {0};
+        ck_assert_int_eq(brunt_constraints_dof_node(&p, NULL), 0);
+        p.dof_node[0].v[2] = -1, p.dof_node[0].old[2] = -came[k];
+        for (int a = 0; a < 3; a++) p.dof_node[0].inverse[a] = 1;
+        ck_assert_int_eq(brunt_constraints_add(&p, NULL), 0);
+        p.constraint[0].n[2] = 1, p.constraint[0].account = &account, p.constraint[0].touch = &touch;
+        p.constraint[0].sign = 1;
+        ck_assert_int_eq(brunt_constraints_entry(&p, 0, 1, NULL), 0);
+        ck_assert_int_eq(brunt_constraints_solve(&p, 8, 1e-9, 1, &timer, NULL), BRUNT_OK);
+        ck_assert_double_eq_tol(p.constraint[0].normal_impulse, 1, 1e-14);
+        ck_assert_double_eq_tol(touch.held, came[k] > 1e-3 ? 0.5 * came[k] : 0, 1e-12);
+        brunt_constraints_free(&p);
+    }
+}
+END_TEST
+
 // Points that turn what they push on, by levers, each with a mass of its own. `alone`: all have four more entries, of
 // weight 0, so that they are in no block whatever they push on.
 static void make_turned(brunt_constraint_set *p, brunt_impulse_account *account, bool alone) {
@@ -552,6 +660,9 @@ int main(void) {
     ADD(no_memory_is_told);
     ADD(columns_are_in_the_order_of_the_points);
     ADD(parts_change_no_sum);
+    ADD(lanes_do_as_entries);
+    ADD(what_presses_holds_nothing);
+    ADD(each_account_gets_what_is_its_own);
     ADD(what_rests_is_at_its_condition);
     ADD(levers_are_in_no_block);
     ADD(slivers_do_not_run_away);
