@@ -441,6 +441,9 @@ void brunt_block_take_back(block *b) {
 
 void brunt_block_finish(brunt_constraint_set *p, int64_t at) {
     const block *b = &p->block[at];
+    for (int l = 0; l < LANES && (at + 2) * LANES <= p->constraint_count; l++)
+        __builtin_prefetch(&p->constraint[(at + 1) * LANES + l].scale, 1),
+            __builtin_prefetch(&p->constraint[(at + 1) * LANES + l].slips, 1);
     fours push, rub;
     part(&push, b->scale, b->row_sum, b->row_sum_t, b->normal_impulse);
     part(&rub, b->friction_impulse[0], b->friction_impulse[1], b->friction_impulse[2], (doubles)b->slips);

@@ -2,6 +2,7 @@
 // too.
 #include "contact/search/nearest.h"
 
+enum { AHEAD = 6 };                   // facets that are fetched meanwhile
 static const double ASKEW = -0.3;     // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
@@ -135,6 +136,9 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
     if (all) *all = (two_nearest){-1, range2, range2, 0, range2};
     for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
         int32_t face = f->cells.face[q];
+        if (q + AHEAD < f->cells.first[l->cell + 1]) // the list is of facets that are anywhere
+            __builtin_prefetch(&s->face_body[f->cells.face[q + AHEAD]]),
+                __builtin_prefetch(s->face_box[f->cells.face[q + AHEAD]]);
         const int32_t other = s->face_body[face];
         if (other == l->body && !(membranes && l->patch_count)) continue;
         const bool membrane = membranes && s->membrane.side[other].faces;

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "mpm/mpm_body.h"
 
-enum { GRAIN = 64 };
+enum { GRAIN = 64, AHEAD = 8 };        // AHEAD: nodes whose facets are fetched meanwhile, in two steps
 static const double CORRECTION = 0.2;  // share of a penetration that is pushed out in a step ...
 static const double RESTITUTION = 0.5; // ... but no faster than this share of the approach, so that it adds no energy
 
@@ -129,6 +129,19 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
     f->nodes.count[n] = (uint8_t)kept;
 }
 
+// What is looked at of the nearest facet.
+static inline void fetch_facet(const brunt_contact_surface *s, int32_t face) {
+    for (int c = 0; c < brunt_face_corners(s->face[face]); c++)
+        __builtin_prefetch(s->x[s->face[face][c]]), __builtin_prefetch(s->v[s->face[face][c]]);
+}
+
+static inline void fetch_nearest(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, int32_t end) {
+    const int32_t far = n + 2 * AHEAD < end ? f->cache.nearest[n + 2 * AHEAD] : -1,
+                  close = n + AHEAD < end ? f->cache.nearest[n + AHEAD] : -1;
+    if (far >= 0) __builtin_prefetch(s->face[far]), __builtin_prefetch(s->face_normal[far]);
+    if (close >= 0) fetch_facet(s, close);
+}
+
 static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
     const search_job *j = context;
     const brunt_contact_surface *s = j->m->surface;
@@ -138,6 +151,7 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
         while (s->node_range[k + 1] <= n) k++;
         j->f->nodes.count[n] = 0;
         if (!s->active[k]) continue;
+        fetch_nearest(f, s, n, (int32_t)end);
         if (has_near_bodies(&f->bodies, f->bodies.box_of[k]))
             find_node_candidates(j, k, n, worker);
         else
@@ -195,6 +209,15 @@ static const brunt_master *kept_master(const brunt_node_to_facet *f, const facet
     return &f->nodes.masters[h->worker].master[h->master];
 }
 
+// What a node's constraint is made of.
+static inline void fetch_constraint(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n) {
+    const int32_t *corner = s->face[node_candidate_of(f, s, n, 0)->face];
+    for (int c = 0; c < brunt_face_corners(corner); c++)
+        __builtin_prefetch(s->x[corner[c]]), __builtin_prefetch(&f->nodes.dof_of[corner[c]]);
+    for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++)
+        __builtin_prefetch(s->face_normal[s->face_of[q]]), __builtin_prefetch(&s->face_area[s->face_of[q]]);
+}
+
 static void fill_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const search_job *j = context;
@@ -204,6 +227,7 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
     int32_t filled = f->nodes.first[2 * begin];
     for (int32_t n = (int32_t)begin; n < end; n++) {
         int32_t at = f->nodes.first[2 * n], entry = f->nodes.first[2 * n + 1];
+        if (n + AHEAD < end && f->nodes.count[n + AHEAD]) fetch_constraint(f, s, n + AHEAD);
         for (int32_t q = 0; q < f->nodes.count[n]; q++, at++) {
             const facet_candidate *h = node_candidate_of(f, s, n, q);
             brunt_constraint *constraint = &j->constraints->constraint[at];
@@ -261,6 +285,8 @@ static void count_node_constraints(void *context, int64_t begin, int64_t end, in
     const brunt_node_to_facet *f = j->f;
     for (int32_t n = (int32_t)begin; n < end; n++) {
         int32_t entries = 0;
+        if (n + AHEAD < end && f->nodes.count[n + AHEAD])
+            __builtin_prefetch(s->face[node_candidate_of(f, s, n + AHEAD, 0)->face]);
         for (int32_t q = 0; q < f->nodes.count[n]; q++) {
             const facet_candidate *h = node_candidate_of(f, s, n, q);
             const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;

@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 
 enum { GRAIN = BRUNT_SURFACE_GRAIN, PIECE = BRUNT_SURFACE_PIECE };
+// Nodes of a surface are anywhere among those of their body: what a loop comes to so many later is fetched meanwhile.
+enum { AHEAD = 12 };
 // Share of a node's faces, by area, that must be left of their sum for it to have a normal, where elements have left:
 // that of a cube's corner is 0.58, of four faces of a wall and two at its end 0.33. Below, faces look every way, and
 // the little that is left of them points anywhere.
@@ -53,6 +55,7 @@ static void bound_pieces(void *context, int64_t begin, int64_t end, int worker) 
         const int32_t first = s->node_range[k] + ((int32_t)p - first_piece(s, k)) * PIECE;
         for (int32_t n = first; n < first + PIECE && n < s->node_end[k]; n++) {
             const real *at = brunt_fem_node(s->fem[k], s->node[n]);
+            if (n + AHEAD < s->node_end[k]) __builtin_prefetch(brunt_fem_node(s->fem[k], s->node[n + AHEAD]));
             double square = 0;
             for (int a = 0; a < 3; a++) {
                 double x = (double)at[a], v = (double)at[BRUNT_FEM_V + a], own = v - s->motion.frame[a];
@@ -174,6 +177,9 @@ static double make_faces(brunt_contact_surface *s, int32_t begin, int32_t end) {
     double widest = 0;
     for (int32_t f = begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
         const int32_t *node = s->face[f];
+        if (f + AHEAD < s->face_count)
+            for (int c = 0; c < brunt_face_corners(s->face[f + AHEAD]); c++)
+                __builtin_prefetch(s->x[s->face[f + AHEAD][c]]);
         const int n = brunt_face_corners(node);
         double normal[3] = {0}, size = 0;
         const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n > 2 ? s->x[node[2]] : p,
@@ -233,6 +239,12 @@ static void make_normal(brunt_contact_surface *s, int k, int32_t n) {
     for (int a = 0; a < 3; a++) s->normal[n][a] = size > (eroded ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
 }
 
+static inline void fetch_force(const brunt_fem_body *fem, int32_t node) {
+    __builtin_prefetch(brunt_fem_node(fem, node));
+    for (int32_t k = fem->partial_first[node]; k < fem->partial_first[node + 1]; k++)
+        __builtin_prefetch(fem->partial + (size_t)fem->partial_of[k] * 4);
+}
+
 // Of the nodes that are near something: velocities, masses and normals, and how far they have gone.
 static void gather_near(const job *j, int k, int32_t begin, int32_t end, struct brunt_surface_way *way) {
     brunt_contact_surface *s = j->surface;
@@ -241,6 +253,7 @@ static void gather_near(const job *j, int k, int32_t begin, int32_t end, struct 
         if (!s->motion.near[n]) continue;
         const int32_t node = s->node[n];
         const real *at = brunt_fem_node(fem, node);
+        if (n + AHEAD < end && s->motion.near[n + AHEAD]) fetch_force(fem, s->node[n + AHEAD]);
         real force[3];
         brunt_fem_internal_force(fem, node, force);
         double inverse = 1 / (double)at[BRUNT_FEM_MASS];
@@ -295,6 +308,7 @@ static void scatter_nodes(void *context, int64_t begin, int64_t end, int worker)
     const brunt_contact_surface *s = ((const job *)context)->surface;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
+        if (n + AHEAD < s->node_end[k]) __builtin_prefetch(brunt_fem_node(s->fem[k], s->node[n + AHEAD]), 1);
         if (n >= s->node_end[k] || !s->motion.near[n]) continue;
         real *at = brunt_fem_node(s->fem[k], s->node[n]);
         for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { HEADER = 64, HUGE_PAGE = 1 << 21, LARGE = 1 << 23 };
+enum { HEADER = 64, HUGE_PAGE = 1 << 21, LARGE = 1 << 21 };
 
 static atomic_size_t live, peak;
 static atomic_llong calls;
