@@ -58,7 +58,8 @@ static int dim(const brunt_body_ref *ref) { return ref->fem->dim; }
 static double fineness(const brunt_body_ref *ref) { return (double)ref->fem->mean_edge; }
 static double first_step(const brunt_body_ref *ref, double cell) { return (void)cell, ref->fem->least_step; }
 static double transit(const brunt_body_ref *ref, double cell) {
-    return (void)cell, (double)ref->fem->mean_edge / (double)ref->fem->material.wave_speed;
+    const brunt_fem_body *fem = ref->fem;
+    return (void)cell, fmax(fem->mean_edge, fem->scaled_edge) / (double)fem->material.wave_speed;
 }
 static void validate(const brunt_body_ref *ref) { brunt_fem_validate(ref->fem); }
 

@@ -145,6 +145,8 @@ struct brunt_fem_body {
     double added_mass;       // [kg] by mass scaling
     int32_t scaled_elements; // how many got some
     double mean_edge;        // [m] of the surface at the start
+    double scaled_edge;      // [m] where mass scaling acts: the longest edge in which a wave of the unscaled material
+                             // takes as long as in a scaled element (its mean edge); 0: nowhere
     double least_step;       // [s] stable step of the undeformed mesh
     real time;               // [s] at the end of the step, for materials that burn
 };

@@ -169,6 +169,17 @@ static void own_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]
     if (body->traits->membrane) brunt_fem_flatten(body->traits->nodes, x);
 }
 
+// Mean of the edges of an element [m].
+static double own_edge(const brunt_element_traits *traits, const double (*x)[3]) {
+    double sum = 0;
+    for (int n = 0; n < traits->nodes; n++)
+        for (int k = 0; k < traits->span; k++) {
+            const double *a = x[n], *b = x[traits->corner[n][k]];
+            sum += sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+        }
+    return sum / (traits->nodes * traits->span);
+}
+
 void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling) {
     const real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
     double x[BRUNT_ELEMENT_NODES][3], norm = 1, overlap = 0;
@@ -193,6 +204,8 @@ void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling) {
             if (wanted > 1) density = wanted;
             body->scalar[field->first][s] = (real)density;
             if (body->element_id[s] >= 0 && density > 1) {
+                const double edge = own_edge(body->traits, (const double(*)[3])x) * sqrt(density);
+                body->scaled_edge = fmax(body->scaled_edge, edge);
                 body->scaled_elements++;
                 body->added_mass += (density - 1) * (double)volume[s] * (double)body->material.density;
             }

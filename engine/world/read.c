@@ -117,11 +117,12 @@ void brunt_boundary_reaction(const brunt_world *world, int32_t index, brunt_reac
     fill_force(&boundary->last, &boundary->account, world->clock.kick, force);
 }
 
-// Of bodies [first, end).
-static double longest_transit(const brunt_world *world, int32_t first, int32_t end) {
+// Of bodies [first, end) that a boundary acts on, NULL: of all of them.
+static double longest_transit(const brunt_world *world, int32_t first, int32_t end, const brunt_boundary *boundary) {
     double longest = 0;
     for (int32_t b = first; b < end && !brunt_world_newton(world, NULL, NULL); b++) {
         const brunt_body_ref *ref = &world->bodies.all[b];
+        if (boundary && ref->fem && !boundary->kind->meet_surface && boundary->body < 0) continue;
         const double transit = ref->ops->transit(ref, world->settings.cell);
         if (isfinite(transit)) longest = fmax(longest, transit);
     }
@@ -130,13 +131,14 @@ static double longest_transit(const brunt_world *world, int32_t first, int32_t e
 
 double brunt_pair_transit(const brunt_world *world, int32_t index) {
     const brunt_pair *pair = &world->pairs.pair[index];
-    if (pair->a < 0) return longest_transit(world, 0, world->bodies.count);
-    return fmax(longest_transit(world, pair->a, pair->a + 1), longest_transit(world, pair->b, pair->b + 1));
+    if (pair->a < 0) return longest_transit(world, 0, world->bodies.count, NULL);
+    return fmax(longest_transit(world, pair->a, pair->a + 1, NULL), longest_transit(world, pair->b, pair->b + 1, NULL));
 }
 
 double brunt_boundary_transit(const brunt_world *world, int32_t index) {
-    const int body = world->boundaries.boundary[index].body;
-    return body < 0 ? longest_transit(world, 0, world->bodies.count) : longest_transit(world, body, body + 1);
+    const brunt_boundary *boundary = &world->boundaries.boundary[index];
+    const int32_t body = boundary->body, count = world->bodies.count;
+    return longest_transit(world, body < 0 ? 0 : body, body < 0 ? count : body + 1, boundary);
 }
 
 double brunt_world_time(const brunt_world *world) { return world->clock.time; }

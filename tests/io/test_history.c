@@ -213,9 +213,9 @@ START_TEST(bars_have_the_force_of_the_wave) {
     static const struct {
         double size, length, cfl;
         const char *element;
-    } bars[] = {{1, 10, 0.9, "hex8"},    {1, 10, 0.3, "hex8"},   {0.5, 10, 0.9, "hex8"}, {0.5, 10, 0.1, "hex8"},
-                {0.25, 10, 0.5, "hex8"}, {1, 10, 0.9, "tet4"},   {1, 10, 0.3, "tet4"},   {0.5, 10, 0.9, "tet4"},
-                {0.5, 10, 0.3, "tet4"},  {0.5, 20, 0.9, "hex8"}, {0.5, 20, 0.5, "tet4"}};
+    } bars[] = {{1, 10, 0.9, "hex8"},    {1, 10, 0.3, "hex8"},     {0.5, 10, 0.9, "hex8"}, {0.5, 10, 0.1, "hex8"},
+                {0.25, 10, 0.5, "hex8"}, {0.125, 10, 0.9, "hex8"}, {1, 10, 0.9, "tet4"},   {1, 10, 0.3, "tet4"},
+                {0.5, 10, 0.9, "tet4"},  {0.5, 10, 0.3, "tet4"},   {0.5, 20, 0.9, "hex8"}, {0.5, 20, 0.5, "tet4"}};
     char sets[7][64];
     const char *given[7];
     for (int b = 0; b < 2; b++) {
@@ -252,6 +252,73 @@ START_TEST(bars_have_the_force_of_the_wave) {
     ck_assert_double_le(fabs(most - 1), 0.02);
     ck_assert_double_le(plateau, 0.02);
     ck_assert_double_eq_tol(sum, impulse[rows - 1], 0.01 * impulse[rows - 1]);
+}
+END_TEST
+
+// Mass scaling makes a mesh slower: bars of four times their density, twice the force, half the wave speed, and twice
+// the time over which forces are means.
+START_TEST(scaled_bars_have_the_force_of_their_wave) {
+    const char *sets[] = {"bodies.a.mass_scaling=2", "bodies.b.mass_scaling=2", _i ? "time.cfl=0.9" : "time.cfl=0.3"};
+    brunt_scene_free(&scene);
+    brunt_history_destroy(history);
+    brunt_world_destroy(world);
+    small_scene_of(bars_text, &scene, sets, 3);
+    world = small_world(&scene);
+    history = NULL;
+    look_back(INFINITY);
+    ck_assert_double_eq_tol(brunt_pair_transit(world, 0), 2, 1e-9);
+    while (brunt_world_time(world) < 55) {
+        ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+        small_steps(world, 1);
+    }
+    const double *time = brunt_history_column(history, "time"),
+                 *force = brunt_history_column(history, "contact.a-b.force_x");
+    double most = 0, plateau = 0;
+    for (int64_t r = 1; r < brunt_history_rows(history); r++) {
+        most = fmax(most, force[r] / 1e-3);
+        if (time[r] > 22 && time[r] < 44) plateau = fmax(plateau, fabs(force[r] / 1e-3 - 1));
+    }
+    printf("  scaled bars, cfl %g: peak %.4f, plateau within %.4f\n", _i ? 0.9 : 0.3, most, plateau);
+    ck_assert_double_le(fabs(most - 1), 0.02);
+    ck_assert_double_le(plateau, 0.02);
+}
+END_TEST
+
+// A line holds material points: what is slower there, but of elements, is not what its force is a mean over. A plane
+// meets both, and with a body of its own that one alone.
+START_TEST(windows_are_of_what_a_boundary_acts_on) {
+    static const char text[] =
+        "brunt: 1\n"
+        "title: Quick points, slow elements\n"
+        "dimension: 2\n"
+        "time: {end: 1 s}\n"
+        "grid: {cell: 0.1 m}\n"
+        "materials:\n"
+        "  quick: {model: linear-elastic, density: 1, E: 100, nu: 0}\n"
+        "  slow: {model: linear-elastic, density: 1, E: 1, nu: 0}\n"
+        "bodies:\n"
+        "  points: {method: mpm, material: quick, shape: {box: {min: [0, 0], max: [1, 1]}}}\n"
+        "  mesh: {method: fem, material: slow, size: 0.5, shape: {box: {min: [3, 0], max: [4, 1]}}}\n"
+        "boundaries:\n"
+        "  - {name: held, line: {points: [[5, -1], [-2, -1]]}, condition: separate}\n"
+        "  - {name: floor, plane: {point: [0, -1], normal: [0, 1]}, condition: separate}\n"
+        "  - {name: own, plane: {point: [-2, 0], normal: [1, 0]}, condition: separate, body: points}\n"
+        "output: {every: none}\n";
+    brunt_scene_free(&scene);
+    brunt_history_destroy(history);
+    brunt_world_destroy(world);
+    small_scene_of(text, &scene, NULL, 0);
+    world = small_world(&scene);
+    history = NULL;
+    look_back(INFINITY);
+    int found = 0;
+    for (int32_t w = 0; w < brunt_boundary_count(world); w++) {
+        brunt_reaction reaction;
+        brunt_boundary_reaction(world, w, &reaction);
+        ck_assert_double_eq_tol(brunt_boundary_transit(world, w), strcmp(reaction.name, "floor") ? 0.01 : 0.5, 1e-9);
+        found++;
+    }
+    ck_assert_int_eq(found, 3);
 }
 END_TEST
 
@@ -654,7 +721,9 @@ int main(void) {
     tcase_add_test(lines, columns_hold_what_the_world_says);
     tcase_add_test(lines, forces_are_means_over_the_interval);
     tcase_add_loop_test(lines, forces_are_means_over_their_window, 0, 4);
-    tcase_add_loop_test(lines, bars_have_the_force_of_the_wave, 0, 11);
+    tcase_add_loop_test(lines, bars_have_the_force_of_the_wave, 0, 12);
+    tcase_add_loop_test(lines, scaled_bars_have_the_force_of_their_wave, 0, 2);
+    tcase_add_test(lines, windows_are_of_what_a_boundary_acts_on);
     tcase_add_test(lines, probe_follows_the_nearest_particle);
     tcase_add_test(lines, unknown_probe_field_is_refused);
     tcase_add_test(lines, file_gives_the_same_lines_and_drops_later_ones);
