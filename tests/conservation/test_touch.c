@@ -82,6 +82,9 @@ START_TEST(bars_give_on_what_they_have) {
     ck_assert_double_le(elastic.drift, ROUNDING);
     ck_assert_double_gt(elastic.held, 0.1 / c->elements);
     ck_assert_double_lt(fabs(got - 1), 0.02);
+    // A shorter one that stands is to be at rest: touches took a half node's energy, and give it back in a kick of m V
+    // / 4.
+    if (c->length > 1) ck_assert_double_eq_tol(elastic.speed[0] / V, -0.25 / c->elements, 0.1 / c->elements);
     ck_assert_double_lt(inelastic.kept, 1 - 0.2 / c->elements);
     ck_assert_double_lt(got_without, got - 0.005);
     ck_assert(inelastic.held == 0);
@@ -132,6 +135,53 @@ START_TEST(walls_that_stand_and_move) {
     ck_assert_double_lt(fabs(both.contact), 1e-6);
     ck_assert_double_lt(fabs(moves.speed[0] - 1e-3 - stands.speed[0]), 2e-3 * 1e-3);
     ck_assert_double_lt(fabs(both.speed[0] + 2e-3 - stands.speed[0]), 2e-3 * 1e-3);
+}
+END_TEST
+
+typedef enum ground { ON_PLANE, ON_HELD, ON_HEAVY, UNDER_HEAVY } ground;
+
+// A block of 2D elements that comes down, or up, at 1e-3: what comes back of its speed, and what contact takes.
+static double bounce_on(ground what, double *lost) {
+    const double side = what == UNDER_HEAVY ? -1 : 1;
+    brunt_world_def def = begin(2, 0, BRUNT_TOUCH_ELASTIC);
+    def_material(&def, "linear-elastic", 1, 1, 0);
+    const double low = side > 0 ? 0.01 : -1.01;
+    def_velocity(mesh(def_box(&def, "block", XYZ(-0.5, low, 0), XYZ(0.5, low + 1, 0)), BRUNT_QUAD4, 0.1), 0,
+                 -side * 1e-3, 0);
+    if (what == ON_PLANE) {
+        def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    } else {
+        def_material(&def, "linear-elastic", what == ON_HELD ? 1 : 1e9, what == ON_HELD ? 1 : 1e9, 0);
+        brunt_body_def *floor = mesh(
+            def_box(&def, "floor", XYZ(-1, side > 0 ? -0.1 : 0, 0), XYZ(1, side > 0 ? 0 : 0.1, 0)), BRUNT_QUAD4, 0.1);
+        floor->material = 1;
+    }
+    if (what == ON_HELD) {
+        def.groups = brunt_alloc(sizeof *def.groups), def.group_count = 1;
+        def.groups[0] = brunt_group_def_default();
+        snprintf(def.groups[0].body, sizeof def.groups[0].body, "floor");
+        snprintf(def.groups[0].group, sizeof def.groups[0].group, "surface");
+    }
+    brunt_world *world = world_take(&def);
+    world_until(world, 10 + 3);
+    const double back = side * world_sums(world, 0).velocity[1] / 1e-3;
+    const brunt_energy e = world_energy(world);
+    *lost = e.contact / e.initial;
+    brunt_world_destroy(world);
+    return back;
+}
+
+// What is held all over, or a thousand million times as heavy, is a wall: from above and from below, at 0 degrees.
+START_TEST(held_and_heavy_are_walls) {
+    double lost[4], back[4];
+    for (int k = 0; k < 4; k++) back[k] = bounce_on((ground)k, &lost[k]);
+    for (int k = 0; k < 4; k++) {
+        printf("  ground %d: %.6f of the speed comes back, contact takes %.1e\n", k, back[k], lost[k]);
+        ck_assert_double_eq_tol(back[k], back[0], 1e-6);
+        ck_assert_double_eq_tol(lost[k], 0, 1e-6);
+        if (k > 1) ck_assert_double_eq_tol(back[k], back[1], 1e-7);
+    }
+    ck_assert_double_gt(back[0], 0.95); // the rest is viscosity and vibration
 }
 END_TEST
 
@@ -202,6 +252,7 @@ int main(void) {
     Suite *suite = suite_create("touch");
     ADD_LOOP(bars_give_on_what_they_have, 7);
     ADD_LOOP(walls_that_stand_and_move, 5);
+    ADD(held_and_heavy_are_walls);
     ADD(release_rubs);
     ADD_LOOP(cubes_keep_their_energy, 2);
     ADD(restart_while_something_is_held);

@@ -60,6 +60,14 @@ START_TEST(effects_that_are_off_cost_nothing) {
     ck_assert_double_le(of("hex8_soft") / of("hex8"), 1.002);
     ck_assert_double_le(of("hex8_inviscid") / of("hex8"), 1.002);
     ck_assert_double_ge(of("hex8_viscous") / of("hex8"), 1.1);
+    // What touches give back costs a twentieth of a step at most where meshes meet (0.5 %), and nothing where none do.
+    // Springs that stop points a fifth at most (they need fewer sweeps: 0.80), and nothing away from what they meet.
+    ck_assert_double_le(of("hex8_met") / of("hex8_met_lossy"), 1.05);
+    ck_assert_double_ge(of("hex8_met") / of("hex8_far"), 1.1);
+    ck_assert_double_le(of("hex8_far") / of("hex8_far_lossy"), 1.001);
+    ck_assert_double_le(of("floor_spring") / of("floor_hard"), 1.2);
+    ck_assert_double_ge(of("floor_spring") / of("wall"), 1.1);
+    ck_assert_double_le(of("wall_spring") / of("wall"), 1.001);
     // What is on is seen: or else the counts would show nothing.
     ck_assert_double_ge(of("gravity") / plain, 1.005);
     ck_assert_double_ge(of("plastic") / plain, 1.01);

@@ -15,8 +15,8 @@ count() {
     sed -n 's/.*Collected : *//p' "$folder/log"
 }
 
-for dress in plain contact options gravity plastic wall two met apart far erode \
-    hex8 hex8_wall hex8_apart hex8_far hex8_mixed hex8_mixed_far hex8_erode hex8_soft hex8_viscous hex8_inviscid; do
+for dress in plain contact options gravity plastic wall two met apart far erode floor_hard floor_spring wall_spring \
+    hex8 hex8_wall hex8_apart hex8_far hex8_far_lossy hex8_met hex8_met_lossy hex8_mixed hex8_mixed_far hex8_erode hex8_soft hex8_viscous hex8_inviscid; do
     short=$(count $dress 4)
     long=$(count $dress 24)
     echo "$dress $(((long - short) / 20))"

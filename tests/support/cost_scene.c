@@ -76,6 +76,14 @@ int main(int count, char **words) {
         materials[0].strength_parameters[2] = 1e4;
     } else if (!strcmp(dress, "wall")) {
         def.planes = &plane, def.plane_count = 1;
+    } else if (!strncmp(dress, "floor_", 6)) { // points that fall on a plane, stopped within a step or by springs
+        plane.point[1] = 0;
+        for (int b = 0; b < 2; b++) bodies[b].velocity[1] = -1;
+        def.planes = &plane, def.plane_count = 1;
+        def.contact.stop = dress[6] == 's' ? BRUNT_STOP_SPRING : BRUNT_STOP_HARD;
+    } else if (!strcmp(dress, "wall_spring")) {
+        def.planes = &plane, def.plane_count = 1;
+        def.contact.stop = BRUNT_STOP_SPRING;
     } else if (!strcmp(dress, "two")) { // two bodies that do not know of each other, and two that do
         def.body_count = 2;
     } else if (!strcmp(dress, "met")) {
@@ -93,16 +101,18 @@ int main(int count, char **words) {
         if (!strcmp(what, "wall") || !strcmp(what, "on_plane")) {
             if (what[0] == 'o') plane.point[1] = 0;
             def.planes = &plane, def.plane_count = 1;
-        } else if (!strcmp(what, "met")) { // a hundredth of an edge apart
+        } else if (!strncmp(what, "met", 3)) { // a hundredth of an edge apart
+            if (!strcmp(what, "met_lossy")) def.contact.touch = BRUNT_TOUCH_INELASTIC;
             bodies[1] = cube("b", 0.8008);
             bodies[1].method = BRUNT_FEM, bodies[1].size = 0.08;
             def.body_count = 2;
             def.contact.method = BRUNT_CONTACT_AUGURY;
-        } else if (!strcmp(what, "apart") || !strcmp(what, "far")) {
+        } else if (!strcmp(what, "apart") || !strncmp(what, "far", 3)) {
             bodies[1] = cube("b", 50);
             bodies[1].method = BRUNT_FEM, bodies[1].size = 0.08;
             def.body_count = 2;
-            if (!strcmp(what, "far")) def.contact.method = BRUNT_CONTACT_AUGURY;
+            if (strcmp(what, "apart") != 0) def.contact.method = BRUNT_CONTACT_AUGURY;
+            if (!strcmp(what, "far_lossy")) def.contact.touch = BRUNT_TOUCH_INELASTIC;
         } else if (!strcmp(what, "mixed") || !strcmp(what, "mixed_far")) { // a mesh and points
             bodies[1] = cube("b", 50);
             def.body_count = 2;
