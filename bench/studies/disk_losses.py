@@ -167,11 +167,12 @@ def main(folder):
     yield from of_elements(folder + "/out")
 
 
-if sys.argv[1:]:
-    sys.exit(__doc__)
-with tempfile.TemporaryDirectory() as folder, open(HERE, "w", newline="") as file:
-    table = csv.writer(file)
-    table.writerow(HEAD)
-    for row in main(folder):
-        table.writerow(row)
-        print(*row, flush=True)
+if __name__ == "__main__":
+    if sys.argv[1:]:
+        sys.exit(__doc__)
+    with tempfile.TemporaryDirectory() as folder, open(HERE, "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(HEAD)
+        for row in main(folder):
+            table.writerow(row)
+            print(*row, flush=True)
