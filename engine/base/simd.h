@@ -30,6 +30,11 @@
 #endif
 #define BRUNT_LANE_BYTES (BRUNT_LANES * sizeof(real))
 
+#if defined(__AVX512F__) && BRUNT_LANES > 1
+#include <immintrin.h>
+#define BRUNT_WHOLE_ROOTS
+#endif
+
 #ifdef BRUNT_FLOAT
 typedef int32_t lane_int;
 #else
@@ -53,7 +58,14 @@ BRUNT_INLINE lanes lanes_max(lanes a, lanes b) { return lanes_select(a > b, a, b
 BRUNT_INLINE lanes lanes_min(lanes a, lanes b) { return lanes_select(a < b, a, b); }
 BRUNT_INLINE lanes lanes_abs(lanes a) { return lanes_max(a, -a); }
 
+// Compilers that like registers of 32 bytes better take the roots of 64 in two parts, and hand them on through memory,
+// where the halves are waited for before the whole can be read.
 BRUNT_INLINE lanes lanes_sqrt(lanes a) {
+#if defined(BRUNT_WHOLE_ROOTS) && defined(BRUNT_FLOAT)
+    return (lanes)_mm512_sqrt_ps((__m512)a);
+#elif defined(BRUNT_WHOLE_ROOTS)
+    return (lanes)_mm512_sqrt_pd((__m512d)a);
+#else
     lanes r = a; // set whole: compilers that vectorise the loop in parts would call it uninitialised
     for (int l = 0; l < BRUNT_LANES; l++)
 #ifdef BRUNT_FLOAT
@@ -62,6 +74,7 @@ BRUNT_INLINE lanes lanes_sqrt(lanes a) {
         r[l] = __builtin_sqrt(a[l]);
 #endif
     return r;
+#endif
 }
 
 BRUNT_INLINE bool lanes_any(lane_mask m) {
@@ -105,9 +118,13 @@ BRUNT_INLINE doubles doubles_select(doubles_mask m, doubles a, doubles b) {
 }
 BRUNT_INLINE doubles doubles_max(doubles a, doubles b) { return doubles_select(a > b, a, b); }
 BRUNT_INLINE doubles doubles_sqrt(doubles a) {
+#ifdef BRUNT_WHOLE_ROOTS
+    return (doubles)_mm512_sqrt_pd((__m512d)a);
+#else
     doubles r = a;
     for (int l = 0; l < BRUNT_DOUBLES; l++) r[l] = __builtin_sqrt(a[l]);
     return r;
+#endif
 }
 
 BRUNT_INLINE doubles_mask doubles_lane(void) {

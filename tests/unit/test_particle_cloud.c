@@ -169,6 +169,9 @@ START_TEST(nodes_of_a_slot_see_what_each_would_alone) {
     uint64_t state = (uint64_t)_i + 3;
     brunt_world *world = make_block(forms[_i], &state);
     brunt_body *body = &world->bodies.mpm[0];
+    brunt_particles *p = &body->particles;
+    const brunt_block *last = &body->grid.blocks[body->grid.block_count - 1];
+    const int64_t slots = p->slots;
     brunt_vicinity vicinity = {.body = NULL};
     brunt_cloud alone = {.count = 0}, cloud = alone;
     const int nodes[2] = {1, body->grid.side - 2};
@@ -180,7 +183,9 @@ START_TEST(nodes_of_a_slot_see_what_each_would_alone) {
             int local[3];
             brunt_node_local(&body->grid, node, local);
             if (local[body->grid.dim - 1] < nodes[0] || local[body->grid.dim - 1] > nodes[1]) continue;
+            p->slots = last->first + last->count; // nothing behind the last may be read
             look(body, slot, node, &alone);
+            p->slots = slots;
             ck_assert_int_eq(brunt_vicinity_look(&vicinity, node, &cloud, NULL), BRUNT_OK);
             ck_assert_int_eq(cloud.count, alone.count);
             for (int r = 0; r < BRUNT_ROWS; r++)
