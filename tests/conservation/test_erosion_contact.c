@@ -574,7 +574,8 @@ static const struct fast_case {
 enum { FAST_CASES = sizeof fast_cases / sizeof fast_cases[0] };
 
 // At 1.2 to 3.3 wave speeds nothing gets through, and no energy is made. Hexahedra that are crushed get deep at their
-// edges: 0.62 of an element, 0.31 where touches give nothing back.
+// edges: 0.62 of an element (0.616 and 0.626 in two builds, whose last digits differ), 0.31 where touches give nothing
+// back.
 START_TEST(very_fast) {
     const struct fast_case *c = &fast_cases[_i];
     const double h = 0.1;
@@ -604,7 +605,7 @@ START_TEST(very_fast) {
     ck_assert_double_lt(p.linear_drift, ROUNDING);
     hard_case("C03", fmax(0, made), 1e-4, 1e-4, "%s and %s, %g of an edge in a step: energy made",
               brunt_element_name(c->kind), c->points ? "points" : "mesh", c->share);
-    hard_case("C03", depth, 0.5, deep(c->kind) && !c->points ? 0.62 : 0.1,
+    hard_case("C03", depth, 0.5, deep(c->kind) && !c->points ? 0.65 : 0.1,
               "%s and %s, %g of an edge in a step: depth [edges]", brunt_element_name(c->kind),
               c->points ? "points" : "mesh", c->share);
     ck_assert_double_gt(b.low[1], a.low[1] + 0.5 * h);
