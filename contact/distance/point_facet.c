@@ -134,41 +134,38 @@ static inline void on_triangles(const four_triangles *f, const double x[3], quad
     for (int k = 0; k < 3; k++) d[k] = ap[k] - v * ab[k] - w * ac[k];
 }
 
-// Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
-static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, int32_t face, const double x[3]) {
-    const four_triangles f = triangles_of(s, face);
-    double d[4][3], square[4], least = INFINITY;
-    bool inside[4], between;
-    quad way[3];
-    quad_mask in;
-    const int first = sector(&f, x, &between);
-    on_triangles(&f, x, way, &in);
-    const int tested = in[first] && !between ? 1 : 4;
-    const quad squares = quad_dot(way, way);
-    for (int k = 0; k < tested; k++) {
-        const int t = (first + k) % 4;
-        for (int a = 0; a < 3; a++) d[k][a] = way[a][t];
-        square[k] = squares[t], inside[k] = in[t];
-        least = square[k] < least ? square[k] : least;
-    }
+// Where one triangle has the nearest point, and not on its rim.
+static inline brunt_closest within_triangle(const brunt_contact_surface *s, int32_t face, int t, const quad way[3],
+                                            double square) {
+    brunt_closest best = {.square = square, .inside = true, .triangle = t};
+    const double *p[3];
+    double n[3];
+    triangle_of(s, face, t, p);
+    unit_normal(p, n);
+    for (int k = 0; k < 3; k++) best.normal[k] += n[k], best.d[k] = way[k][t];
+    return best;
+}
+
+// Triangles that are as near as each other: the mean of their normals and of the ways to x, whose length is that of
+// either, and as its triangle the one that most faces x, as between facets.
+static brunt_closest on_rim(const brunt_contact_surface *s, int32_t face, int first, const quad way[3], quad squares,
+                            quad_mask in, double least) {
     brunt_closest best = {.square = INFINITY};
-    const double root = tested > 1 ? sqrt(least) + BRUNT_TIE * sqrt(s->face_area[face]) : INFINITY;
+    const double root = sqrt(least) + BRUNT_TIE * sqrt(s->face_area[face]);
     double most = -1;
     int count = 0;
-    // Triangles that are as near as each other: the mean of their normals and of the ways to x, whose length is that of
-    // either, and as its triangle the one that most faces x, as between facets.
-    for (int k = 0; k < tested; k++) {
-        if (square[k] > root * root) continue;
+    for (int k = 0; k < 4; k++) {
         const int t = (first + k) % 4;
-        const double *p[3];
+        if (squares[t] > root * root) continue;
+        const double d[3] = {way[0][t], way[1][t], way[2][t]}, *p[3];
         double n[3];
         triangle_of(s, face, t, p);
         unit_normal(p, n);
-        const double normal_distance = inside[k] ? INFINITY : fabs(dot(n, d[k]));
+        const double normal_distance = in[t] ? INFINITY : fabs(dot(n, d));
         count++, best.triangles |= 1 << t;
-        for (int c = 0; c < 3; c++) best.normal[c] += n[c], best.d[c] += d[k][c];
+        for (int c = 0; c < 3; c++) best.normal[c] += n[c], best.d[c] += d[c];
         if (normal_distance > most)
-            most = normal_distance, best.square = square[k], best.inside = inside[k], best.triangle = t;
+            most = normal_distance, best.square = squares[t], best.inside = in[t], best.triangle = t;
     }
     if (count == 1) best.triangles = 0;
     const double size = count > 1 ? sqrt(dot(best.normal, best.normal)) : 1;
@@ -180,7 +177,29 @@ static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, in
     return best;
 }
 
+// Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
+static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, int32_t face, const double x[3],
+                                              double beyond) {
+    const four_triangles f = triangles_of(s, face);
+    bool between;
+    quad way[3];
+    quad_mask in;
+    const int first = sector(&f, x, &between);
+    on_triangles(&f, x, way, &in);
+    const quad squares = quad_dot(way, way);
+    const bool one = in[first] && !between;
+    double least = squares[first];
+    for (int t = 0; t < 4 && !one; t++) least = squares[t] < least ? squares[t] : least;
+    if (least > beyond) return (brunt_closest){.square = least};
+    return one ? within_triangle(s, face, first, way, least) : on_rim(s, face, first, way, squares, in, least);
+}
+
 brunt_closest brunt_closest_on_face(const brunt_contact_surface *s, int32_t face, const double x[3]) {
+    return brunt_closest_on_face_within(s, face, x, INFINITY);
+}
+
+brunt_closest brunt_closest_on_face_within(const brunt_contact_surface *s, int32_t face, const double x[3],
+                                           double beyond) {
     const int32_t *node = s->face[face];
     brunt_closest best = {.square = INFINITY};
     if (node[2] < 0) {
@@ -194,7 +213,7 @@ brunt_closest brunt_closest_on_face(const brunt_contact_surface *s, int32_t face
         best.square = dot(best.d, best.d);
         return best;
     }
-    if (node[3] >= 0) return closest_on_quadrilateral(s, face, x);
+    if (node[3] >= 0) return closest_on_quadrilateral(s, face, x, beyond);
     const double *p[3];
     triangle_of(s, face, 0, p);
     on_triangle(p, x, best.d, &best.inside);

@@ -16,6 +16,9 @@ typedef struct brunt_closest {
 #define BRUNT_TIE 1e-6
 
 brunt_closest brunt_closest_on_face(const brunt_contact_surface *surface, int32_t face, const double x[3]);
+// The same; of a facet whose square of the distance is more than `beyond` [m^2] that square alone is told.
+brunt_closest brunt_closest_on_face_within(const brunt_contact_surface *surface, int32_t face, const double x[3],
+                                           double beyond);
 // Weights of the facet's nodes where x projects onto its plane, alone.
 void brunt_face_values(const brunt_contact_surface *surface, int32_t face, int triangle, const double x[3],
                        double weight[4]);

@@ -55,7 +55,10 @@ bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l) {
         if (!other->membrane && within(other, l->x, 0)) l->enter[l->enters++] = other->body;
     }
     l->cell = l->touches ? cell_of(f, l->x) : BRUNT_NONE;
-    return l->cell >= 0;
+    if (l->cell < 0) return false;
+    l->face = f->cells.face + f->cells.first[l->cell];
+    l->faces = f->cells.first[l->cell + 1] - f->cells.first[l->cell];
+    return true;
 }
 
 static bool is_among(int32_t body, const int32_t *list, int32_t count) {
@@ -118,8 +121,8 @@ static inline bool beyond(const brunt_contact_surface *s, const double box[6], c
     return sum * (1 - 1e-6) > square && sum > clear * clear;
 }
 
-// The nearest facets in a cell of each body that is looked for. How many bodies. `membranes`: whether there are any;
-// the cells have their fronts, for both sides.
+// The nearest facets among those listed of each body that is looked for. How many bodies. `membranes`: whether there
+// are any; the cells have their fronts, for both sides.
 static inline __attribute__((always_inline)) int find_nearest(const brunt_contact_surface *s,
                                                               const brunt_node_to_facet *f, const search_query *l,
                                                               const facet_search what, bool membranes,
@@ -134,11 +137,10 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
     if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = tie(s, guessed.square);
     int bodies = 0;
     if (all) *all = (two_nearest){-1, range2, range2, 0, range2};
-    for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
-        int32_t face = f->cells.face[q];
-        if (q + AHEAD < f->cells.first[l->cell + 1]) // the list is of facets that are anywhere
-            __builtin_prefetch(&s->face_body[f->cells.face[q + AHEAD]]),
-                __builtin_prefetch(s->face_box[f->cells.face[q + AHEAD]]);
+    for (int32_t q = 0; q < l->faces; q++) {
+        int32_t face = l->face[q];
+        if (q + AHEAD < l->faces) // the list is of facets that are anywhere
+            __builtin_prefetch(&s->face_body[l->face[q + AHEAD]]), __builtin_prefetch(s->face_box[l->face[q + AHEAD]]);
         const int32_t other = s->face_body[face];
         if (other == l->body && !(membranes && l->patch_count)) continue;
         const bool membrane = membranes && s->membrane.side[other].faces;
@@ -157,11 +159,13 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
         if (face != guess && (!all || l->particle || beyond(s, s->face_box[face], l->x, all->second)) &&
             (!faces || (known < f->bodies.range && beyond(s, s->face_box[face], l->x, known * known))))
             continue;
-        brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
+        // What is further than the guess, of its body, is neither the nearest nor as near: its square is enough.
+        const double settled = guess >= 0 && other == s->face_body[guess] ? bound * bound : INFINITY;
+        brunt_closest at = face == guess ? guessed : brunt_closest_on_face_within(s, face, l->x, settled);
         if (at.square > range2) continue;
         const bool behind = membrane && dot(at.normal, at.d) < 0;
         if (all) add_nearest(all, &at, behind ? face + s->membrane.side[other].faces : face);
-        if (!faces) continue;
+        if (!faces || at.square > settled) continue;
         if (membrane) {
             if (normal ? cosine < 0 : behind) turn_over(s, &face, &at);
             if (!on_side(l, &at)) continue;
@@ -271,6 +275,27 @@ static inline bool is_before(const brunt_contact_surface *s, const two_nearest *
     return two->height > 1e-6 * s->mean_edge && two->height > 0.1 * sqrt(two->square);
 }
 
+// Whether a place is clearly before the nearest facet of a body that is not the nearest of all. A membrane has no
+// inside.
+static bool is_outside(const brunt_contact_surface *s, const search_query *l, int32_t body) {
+    two_nearest two = {-1, INFINITY, INFINITY, 0, INFINITY};
+    if (is_membrane(s, body)) return false;
+    for (int32_t q = 0; q < l->faces; q++) {
+        const int32_t face = l->face[q];
+        if (s->face_body[face] != body || !near_box(s->face_box[face], l->x, sqrt(two.first) + TOUCH * s->mean_edge))
+            continue;
+        const brunt_closest at = brunt_closest_on_face(s, face, l->x);
+        add_nearest(&two, &at, face);
+    }
+    return two.face >= 0 && is_before(s, &two);
+}
+
+// How far all facets but the nearest are, looked for as far as `to`.
+static inline double second_of(const brunt_contact_surface *s, const brunt_node_to_facet *f, const two_nearest *two,
+                               double to) {
+    return fmin(fmin(f->bodies.range, sqrt(two->second)), to) * (1 - 1e-8) - TOUCH * s->mean_edge;
+}
+
 // What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is.
@@ -297,6 +322,8 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
                 resolved || (opposed[b].body == l->enter[k] && opposed[b].count && opposed[b].square <= close * close);
         if (!resolved) entered[unresolved++] = l->enter[k];
     }
+    out->reach = INFINITY;
+    if (unresolved && l->among) return; // it leaves through whatever facet is nearest, however far
     int all = unresolved
                   ? find_nearest(s, f, l, (facet_search){.list = entered, .count = unresolved, .guess = -1}, false, any)
                   : 0;
@@ -316,7 +343,8 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     for (int b = 0; b < bodies && out->count < BRUNT_MAX_CANDIDATES; b++) {
         facet_candidate *h = &out->candidate[out->count];
         if (!opposed[b].count || !brunt_nearest_opposed(s, &opposed[b], l->normal, h)) continue;
-        if (h->gap < 0 && outside && h->body == s->face_body[two.face]) continue;
+        if (h->gap < 0 && two.face >= 0 && (h->body == s->face_body[two.face] ? outside : is_outside(s, l, h->body)))
+            continue;
         if (membranes && h->gap < 0 && l->normal && (by_membrane || l->membrane) && !is_membrane(s, h->body) &&
             other_way_out(m, f, l, h->body, opposed[b].square))
             continue;
@@ -326,11 +354,12 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     }
     if (membranes) add_slopes(m, f, l, out);
     if (s->renewal.eroded) add_eroded(m, f, l, out);
+    // Nothing further away than this changed what was found.
+    out->reach = fmax(sqrt(two.first) + margin, bodies == 1 && opposed[0].count ? opposed[0].root : f->bodies.range);
     out->distance = outside || two.face < 0 || (by_membrane && !inside) ? fmin(f->bodies.range, sqrt(two.first)) : 0;
     out->second = 0;
     if (plain && out->count == 1 && two.face == out->candidate[0].face && !s->renewal.eroded)
-        out->second =
-            fmin(fmin(f->bodies.range, sqrt(two.second)), out->distance + margin) * (1 - 1e-8) - TOUCH * s->mean_edge;
+        out->second = second_of(s, f, &two, out->distance + margin);
     if (membranes) thicken(s, l->half, out);
 }
 
@@ -340,6 +369,67 @@ void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_f
         find_candidates(m, f, l, guess, true, out);
     else
         find_candidates(m, f, l, guess, false, out);
+}
+
+// Lists the facets that a node with one body near it may come to before anything has moved by much, for what they are
+// among to be found without the cells; none where they are too many. Cells hold all that is within their range.
+void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_facet *f, const search_query *l,
+                               int32_t n) {
+    const brunt_contact_surface *s = m->surface;
+    int32_t *list = f->cache.beside[n], count = 0;
+    f->cache.node[n].beyond = 0;
+    if (l->touches != 1 || s->membrane.side || s->renewal.eroded) return;
+    const double beyond = fmin(f->cells.range, s->motion.seen) * (1 - 1e-8);
+    for (int32_t q = 0; q < l->faces; q++) {
+        if (s->face_body[l->face[q]] != l->touch[0] || !near_box(s->face_box[l->face[q]], l->x, beyond)) continue;
+        if (count == BRUNT_BESIDE) return;
+        list[count++] = l->face[q];
+    }
+    if (count < BRUNT_BESIDE) list[count] = -1;
+    if (count > 0) f->cache.node[n].beyond = beyond;
+}
+
+// Where the facet that was the nearest still is, and none of those listed is as near: what find_candidates comes to.
+static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
+                           int32_t face, candidate_list *out) {
+    const double range = f->bodies.range, margin = MARGIN * s->mean_edge, close = CLOSE * s->mean_edge;
+    if (face < 0 || s->face_body[face] != l->touch[0] ||
+        (l->normal && -dot(s->face_normal[face], l->normal) <= OPPOSED))
+        return false;
+    nearest one = {.body = l->touch[0], .count = 1, .root = INFINITY, .tied = {{.face = face}}};
+    const brunt_closest *at = &one.tied[0].at;
+    one.tied[0].at = brunt_closest_on_face(s, face, l->x), one.square = at->square;
+    const double root = tie(s, at->square);
+    if (at->square > fmin(close * close, range * range)) return false;
+    two_nearest two = {face, at->square, range * range, dot(at->normal, at->d), at->square};
+    for (int32_t q = 0; q < l->faces; q++) {
+        if (l->face[q] == face || !near_box(s->face_box[l->face[q]], l->x, root + margin)) continue;
+        const double square = brunt_closest_on_face_within(s, l->face[q], l->x, 0).square;
+        if (!(square > root * root)) return false;
+        two.second = fmin(two.second, square);
+    }
+    const bool outside = is_before(s, &two);
+    out->count =
+        brunt_nearest_opposed(s, &one, l->normal, &out->candidate[0]) && !(out->candidate[0].gap < 0 && outside);
+    out->distance = outside ? fmin(range, sqrt(two.first)) : 0;
+    out->second = out->count ? second_of(s, f, &two, out->distance + margin) : 0;
+    out->reach = root + margin;
+    return true;
+}
+
+// What is found among the facets that were listed, where no others can have come so near as to change it: then it is
+// what the cells would give, to the last bit.
+bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+                            int32_t n, candidate_list *out) {
+    const brunt_contact_surface *s = m->surface;
+    const double beyond = f->cache.node[n].beyond;
+    if (!(beyond > 0) || l->touches != 1 || s->face_body[f->cache.beside[n][0]] != l->touch[0]) return false;
+    search_query among = *l;
+    among.face = f->cache.beside[n], among.faces = 0, among.among = true;
+    while (among.faces < BRUNT_BESIDE && among.face[among.faces] >= 0) among.faces++;
+    if (!find_one_among(s, f, &among, f->cache.nearest[n], out))
+        find_candidates(m, f, &among, f->cache.nearest[n], false, out);
+    return out->reach < beyond;
 }
 
 // The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one

@@ -19,6 +19,7 @@ typedef struct candidate_list {
     facet_candidate candidate[BRUNT_MAX_CANDIDATES];
     int32_t count;
     double distance, second; // [m] how far the nearest facet is, or how far was looked, and the nearest but the one hit
+    double reach;            // [m] what is further away than this has no part in it
 } candidate_list;
 
 // A place that looks around: which bodies it may touch (their boxes are that near), and which it may have entered.
@@ -27,6 +28,9 @@ typedef struct search_query {
     const double *x, *normal; // outward; NULL when it has none
     bool particle; // nothing is remembered of what it sees: how far all but the nearest facet are is not asked for
     int64_t cell;
+    const int32_t *face; // to look through: those in the cell ...
+    int32_t faces;
+    bool among; // ... or those listed when it last looked there
     int32_t touch[BRUNT_MAX_NEAR], touches, enter[BRUNT_MAX_NEAR], enters;
     // Where there are membranes: half its own thickness, how far behind one it may be found, and the elements of its
     // own body that are no obstacle; without those the body does not meet itself.

@@ -7,7 +7,8 @@ int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept
                    RESERVE(&f->nodes, candidate, BRUNT_MAX_CANDIDATES * (nodes + 1), "facets near nodes", error) ||
                    BRUNT_CAPACITY(f->cache.nearest, (size_t)nodes + 1, (size_t)kept, "nearest facets of nodes",
                                   error) ||
-                   RESERVE(&f->cache, node, nodes + 1, "distances of nodes", error)
+                   RESERVE(&f->cache, node, nodes + 1, "distances of nodes", error) ||
+                   RESERVE(&f->cache, beside, nodes + 1, "facets beside nodes", error)
                ? BRUNT_FAILED
                : BRUNT_OK;
 }
@@ -62,7 +63,7 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_con
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             const double *from = in + 7 * brunt_surface_slot(s, k, n);
             f->cache.nearest[n] = (int32_t)from[0];
-            f->cache.node[n] = (node_distance){from[1], moved - from[2], from[3]};
+            f->cache.node[n] = (node_distance){from[1], moved - from[2], from[3], 0};
             for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
         }
     return BRUNT_OK;

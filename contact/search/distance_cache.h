@@ -9,13 +9,17 @@
 typedef struct node_distance {
     double distance, since;
     double second; // of the nearest facet but `nearest`: until then that one stays the nearest
+    double beyond; // how far all facets are, at least, but those `beside` it; 0: none are listed. It follows motion
 } node_distance;
 
+enum { BRUNT_BESIDE = 8 }; // as many about a corner: beside one a node has several as near again and again
+
 typedef struct distance_cache {
-    node_distance *node; // of each
-    int32_t *nearest;    // of each: the face it was nearest to, to look at first; -1
-    int32_t *spare;      // while they are put in a new order
-    size_t node_capacity, nearest_capacity, spare_capacity;
+    node_distance *node;             // of each
+    int32_t *nearest;                // of each: the face it was nearest to, to look at first; -1
+    int32_t *spare;                  // while they are put in a new order
+    int32_t (*beside)[BRUNT_BESIDE]; // of each: facets about it in ascending order, -1 after the last
+    size_t node_capacity, nearest_capacity, spare_capacity, beside_capacity;
 } distance_cache;
 
 // Aborts where what is remembered of `nodes` nodes names faces that there are not, or a way below 0.

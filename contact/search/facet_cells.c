@@ -3,7 +3,7 @@
 
 enum { CHUNK = 1024 };
 static const double MARGIN = 0.125; // mean edges: how far facets may move before the cells are made anew
-static const double CELL = 0.5;     // mean edges: of the cells that facets are found in ...
+static const double CELL = 0.75;    // mean edges: of the cells that facets are found in ...
 static const double COARSE = 0.25;  // ... of how far they are looked for, where all is fast
 
 bool brunt_broad_phase_in_range(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],

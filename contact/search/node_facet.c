@@ -7,6 +7,7 @@
 #include "mpm/mpm_body.h"
 
 enum { GRAIN = 64, AHEAD = 8 };        // AHEAD: nodes whose facets are fetched meanwhile, in two steps
+static const double BESIDE = 0.05;     // mean edges: where the second facet is as near, those about are listed
 static const double CORRECTION = 0.2;  // share of a penetration that is pushed out in a step ...
 static const double RESTITUTION = 0.5; // ... but no faster than this share of the approach, so that it adds no energy
 
@@ -86,8 +87,9 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
     const double *normal = s->normal[n];
     bool faces = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
     node_distance *cached = &f->cache.node[n];
-    const double since = cached->since += s->motion.apart[brunt_surface_chunk(s, k, n) / s->motion.group],
-                 far = fmin(f->bodies.range, s->motion.seen);
+    const double apart = s->motion.apart[brunt_surface_chunk(s, k, n) / s->motion.group],
+                 far = fmin(f->bodies.range, s->motion.seen), since = cached->since += apart;
+    cached->beyond -= apart;
     if (cached->distance - since > f->bodies.travel) return;
     if (!s->motion.near[n]) {
         *cached = (node_distance){.distance = far};
@@ -105,7 +107,10 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
             if (l.touches) cached->distance = 0; // near, but outside the cells
             return;
         }
-        brunt_candidates_find(m, f, &l, f->cache.nearest[n], found);
+        if (!brunt_candidates_among(m, f, &l, n, found)) {
+            brunt_candidates_find(m, f, &l, f->cache.nearest[n], found);
+            if (found->second < BESIDE * s->mean_edge) brunt_candidates_remember(m, f, &l, n);
+        }
         cached->distance = fmin(found->distance, far), cached->second = fmin(found->second, far);
         if (l.touches == BRUNT_MAX_NEAR)
             cached->distance = cached->second = 0; // there may be more bodies than were looked at

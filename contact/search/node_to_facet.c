@@ -9,11 +9,11 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     for (int t = 0; t < f->nodes.masters_count; t++) brunt_free(f->nodes.masters[t].master);
     brunt_feature_edges_free(&f->edges);
     brunt_node_touches_free(&f->touches);
-    void *owned[] = {
-        f->bodies.box,     f->bodies.pair,    f->bodies.box_of, f->bodies.first,  f->bodies.list,     f->cells.first,
-        f->cells.face,     f->cells.x,        f->cells.box,     f->nodes.count,   f->nodes.candidate, f->cache.nearest,
-        f->cache.node,     f->nodes.dof_of,   f->nodes.first,   f->nodes.meets,   f->cells.moved,     f->cells.near,
-        f->particles.dofs, f->particles.list, f->nodes.masters, f->particles.run, f->cache.spare,     f};
+    void *owned[] = {f->bodies.box,      f->bodies.pair,   f->bodies.box_of, f->bodies.first,   f->bodies.list,
+                     f->cells.first,     f->cells.face,    f->cells.x,       f->cells.box,      f->nodes.count,
+                     f->nodes.candidate, f->cache.nearest, f->cache.node,    f->nodes.dof_of,   f->nodes.first,
+                     f->nodes.meets,     f->cells.moved,   f->cells.near,    f->particles.dofs, f->particles.list,
+                     f->nodes.masters,   f->particles.run, f->cache.spare,   f->cache.beside,   f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 

@@ -53,6 +53,12 @@ bool brunt_broad_phase_in_range(const brunt_node_to_facet *f, int32_t box, const
 bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l);
 void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
                            int32_t guess, candidate_list *out);
+// Lists the facets about node n, whose query looked through its cell; and what it meets among them: false where that
+// hangs on others, too.
+void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_facet *f, const search_query *l,
+                               int32_t n);
+bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+                            int32_t n, candidate_list *out);
 // A facet on the front of a membrane in place of that on its back; any other as it is: what cells list.
 int32_t brunt_candidates_front(const brunt_contact_surface *s, int32_t face);
 bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,

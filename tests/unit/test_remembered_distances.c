@@ -1,14 +1,43 @@
 // What the search for contact remembers of nodes from step to step saves work and changes nothing: a world that forgets
 // it before every step comes to the same bits.
+#include "contact/distance/point_facet.h"
 #include "contact/search/node_to_facet_parts.h"
 #include "world/world.h"
 #include "tests/support/hard_world.h"
 
-enum { STEPS = 120, CASES = 6 };
+enum { STEPS = 120, CASES = 8 };
 
 // In either order of the bodies: a plate that slides over one that is held, under a pressure that bends both out at
-// their rims; a fine block that hits a coarse one and leaves it again; and the plates on a floor.
+// their rims; a fine block that hits a coarse one and leaves it again; the plates on a floor; and a plate that slides
+// from one onto another, node on node, beside whose edges facets are as near for long: four about a corner, or more
+// than are listed.
+static void add_plate(brunt_world_def *def, const char *name, brunt_element_kind element, const double low[3],
+                      const double high[3]) {
+    brunt_body_def *b = def_box(def, name, low, high);
+    b->method = BRUNT_FEM, b->element = element, b->size = element == BRUNT_TET4 ? 0.7 : 1;
+    brunt_group_def *held = &def->groups[def->group_count++];
+    *held = brunt_group_def_default();
+    snprintf(held->body, sizeof held->body, "%s", name), snprintf(held->group, sizeof held->group, "ymin");
+}
+
+static brunt_world *make_over(int first) {
+    const brunt_element_kind element = first ? BRUNT_TET4 : BRUNT_HEX8;
+    brunt_world_def def = def_begin(3, 1);
+    def_material(&def, "neo-hookean", 1000, 1e9, 0.3);
+    def.groups = brunt_alloc(2 * sizeof *def.groups);
+    if (first) add_plate(&def, "near", element, XYZ(0, 0, 0), XYZ(8, 2, 12));
+    brunt_body_def *b = def_box(&def, "over", XYZ(4, 2, 1), XYZ(8, 4, 11));
+    b->method = BRUNT_FEM, b->element = element, b->size = 1;
+    def_velocity(b, 90, -5, 3);
+    if (!first) add_plate(&def, "near", element, XYZ(0, 0, 0), XYZ(8, 2, 12));
+    add_plate(&def, "next", element, XYZ(8.02, 0, 0), XYZ(18, 2, 12));
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    def.gravity[1] = -2e4;
+    return world_take(&def);
+}
+
 static brunt_world *make(int which) {
+    if (which / 2 == 3) return make_over(which % 2);
     brunt_world_def def = def_begin(3, 1);
     def_material(&def, "neo-hookean", 1000, 1e9, 0.3);
     const int first = which % 2;
@@ -43,17 +72,38 @@ static void forget(brunt_world *world) {
         f->cache.node[n] = (node_distance){0}, f->cache.nearest[n] = -1;
 }
 
+// What is listed beside a node is all that is nearer than is said of that body, as it was before the step.
+static int32_t count_unlisted(const brunt_contact *contact) {
+    const brunt_contact_surface *s = &contact->surface;
+    int32_t unlisted = 0;
+    for (int32_t n = 0; n < s->node_count; n++) {
+        const double beyond = contact->node_to_facet->cache.node[n].beyond;
+        const int32_t *beside = contact->node_to_facet->cache.beside[n];
+        for (int32_t face = 0; face < s->face_count && beyond > 0; face++) {
+            bool listed = s->face_body[face] != s->face_body[beside[0]], near = true;
+            for (int k = 0; k < BRUNT_BESIDE && beside[k] >= 0; k++) listed = listed || beside[k] == face;
+            for (int a = 0; a < 3; a++)
+                near = near && s->x[n][a] > s->face_box[face][a] - beyond &&
+                       s->x[n][a] < s->face_box[face][3 + a] + beyond;
+            unlisted += !listed && near && sqrt(brunt_closest_on_face(s, face, s->x[n]).square) < beyond;
+        }
+    }
+    return unlisted;
+}
+
 START_TEST(what_is_remembered_changes_nothing) {
     brunt_world *one = make(_i), *other = make(_i);
-    int64_t remembered = 0, met = 0;
+    int64_t remembered = 0, listed = 0, met = 0;
     for (int s = 0; s < STEPS; s++) {
         forget(other);
         world_steps(one, 1), world_steps(other, 1);
         const brunt_contact *contact = &one->contact;
         for (int32_t n = 0; n < contact->surface.node_count && contact->constraints.constraint_count; n++)
-            remembered += contact->node_to_facet->cache.node[n].since > 0;
+            remembered += contact->node_to_facet->cache.node[n].since > 0,
+                listed += contact->node_to_facet->cache.node[n].beyond > 0;
         met += contact->constraints.constraint_count;
-        for (int b = 0; b < 2; b++) {
+        if (s % 8 == 7 && contact->node_to_facet) ck_assert_int_eq(count_unlisted(contact), 0);
+        for (int b = 0; b < brunt_body_count(one); b++) {
             double *p = world_field(one, b, "velocity"), *q = world_field(other, b, "velocity");
             const int64_t count = brunt_body_size(one, b, BRUNT_AT_NODES);
             for (int64_t i = 0; i < 3 * count; i++)
@@ -62,10 +112,11 @@ START_TEST(what_is_remembered_changes_nothing) {
             free(p), free(q);
         }
     }
-    printf("  case %d: %lld times a node was remembered, %lld constraints\n", _i, (long long)remembered,
-           (long long)met);
+    printf("  case %d: %lld times a node was remembered, %lld times facets beside it, %lld constraints\n", _i,
+           (long long)remembered, (long long)listed, (long long)met);
     ck_assert_int_gt(met, 1000);
     ck_assert_int_gt(remembered, met / 4);
+    ck_assert_int_gt(listed, met / 16);
     brunt_world_destroy(one), brunt_world_destroy(other);
 }
 END_TEST
