@@ -7,7 +7,8 @@
 #include "mpm/particles.h"
 #include "mpm/mpm_body.h"
 
-static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
+static const double RANGE = 0.25; // mean edges: how far a body looks for others, if nothing moves faster
+static const double WAKE = 8;     // times the way of a step: what is no further apart wakes along with what is reached
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 
 static void bound_grid(const brunt_body *body, body_box *box) {
@@ -71,6 +72,37 @@ static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     return BRUNT_OK;
 }
 
+// Whether a body is in the search: one that was in it, as long as anything is near, and material points.
+static inline bool is_awake(const brunt_contact_surface *s, const body_box *box) {
+    return box->fem < 0 || s->active[box->fem];
+}
+
+// Leaves out the pairs with a mesh that nothing can reach in this step, and that nothing was near to before: one
+// comparison of boxes is all it costs. When anything is reached, what will be soon wakes, too, so that what is known of
+// distances is seldom made anew.
+static void leave_sleeping(brunt_contact_surface *s, brunt_node_to_facet *f) {
+    const double travel = f->bodies.travel + 1e-6 * s->mean_edge;
+    memcpy(s->active, s->motion.was_active, (size_t)s->fem_count * sizeof *s->active);
+    for (int wake = 0; wake < 2; wake++) {
+        bool reached = false;
+        for (int32_t p = 0; p < f->bodies.pair_count; p++) {
+            const body_box *a = &f->bodies.box[f->bodies.pair[p].a], *b = &f->bodies.box[f->bodies.pair[p].b];
+            if ((is_awake(s, a) && is_awake(s, b)) || !overlap(a, b, wake ? WAKE * travel : travel)) continue;
+            reached = true;
+            if (wake && a->fem >= 0) s->active[a->fem] = true;
+            if (wake && b->fem >= 0) s->active[b->fem] = true;
+        }
+        if (!reached) break;
+    }
+    int32_t kept = 0;
+    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
+        const near_pair *pair = &f->bodies.pair[p];
+        if (is_awake(s, &f->bodies.box[pair->a]) && is_awake(s, &f->bodies.box[pair->b]))
+            f->bodies.pair[kept++] = *pair;
+    }
+    f->bodies.pair_count = kept;
+}
+
 static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
     f->bodies.pair_count = 0;
     for (int32_t i = 0; i < f->bodies.box_count; i++)
@@ -86,6 +118,7 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, br
                 return BRUNT_FAILED;
             f->bodies.pair[f->bodies.pair_count++] = (near_pair){i, k};
         }
+    if (!(m->look > 0)) leave_sleeping(m->surface, f);
     if (RESERVE(&f->bodies, first, f->bodies.box_count + 2, "boxes near boxes", error) ||
         RESERVE(&f->bodies, list, 2 * f->bodies.pair_count + 1, "boxes near boxes", error))
         return BRUNT_FAILED;

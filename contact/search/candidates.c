@@ -296,6 +296,19 @@ static inline double second_of(const brunt_contact_surface *s, const brunt_node_
     return fmin(fmin(f->bodies.range, sqrt(two->second)), to) * (1 - 1e-8) - TOUCH * s->mean_edge;
 }
 
+// The bodies whose boxes it is in, and of which no facet that faces it is within the root of `square`. How many.
+static inline int32_t list_unresolved(const search_query *l, const nearest *opposed, int bodies, double square,
+                                      int32_t *entered) {
+    int32_t unresolved = 0;
+    for (int32_t k = 0; l->normal && k < l->enters; k++) {
+        bool resolved = false;
+        for (int b = 0; b < bodies; b++)
+            resolved = resolved || (opposed[b].body == l->enter[k] && opposed[b].count && opposed[b].square <= square);
+        if (!resolved) entered[unresolved++] = l->enter[k];
+    }
+    return unresolved;
+}
+
 // What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is.
@@ -313,15 +326,9 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     if (membranes && guess >= 0 && !l->particle && is_membrane(s, s->face_body[guess]))
         guess = -1; // it may be on the other side now
     const facet_search opposed_to_it = {l->normal, OPPOSED, l->touch, l->touches, guess, margin, &two};
-    int bodies = find_nearest(s, f, l, opposed_to_it, membranes, opposed), unresolved = 0;
+    const int bodies = find_nearest(s, f, l, opposed_to_it, membranes, opposed);
     int32_t entered[BRUNT_MAX_NEAR];
-    for (int32_t k = 0; l->normal && k < l->enters; k++) {
-        bool resolved = false;
-        for (int b = 0; b < bodies; b++)
-            resolved =
-                resolved || (opposed[b].body == l->enter[k] && opposed[b].count && opposed[b].square <= close * close);
-        if (!resolved) entered[unresolved++] = l->enter[k];
-    }
+    const int32_t unresolved = list_unresolved(l, opposed, bodies, close * close, entered);
     out->reach = INFINITY;
     if (unresolved && l->among) return; // it leaves through whatever facet is nearest, however far
     int all = unresolved

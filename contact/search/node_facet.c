@@ -365,11 +365,23 @@ static int search_from_nodes(search_job *j, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// Whether body k, or one near it, is new: nothing is known of distances then.
+static bool is_anew(const brunt_contact_surface *s, const brunt_node_to_facet *f, int k) {
+    bool anew = s->motion.anew[k];
+    const int32_t box = f->bodies.box_of[k];
+    for (int32_t q = f->bodies.first[box]; q < f->bodies.first[box + 1]; q++) {
+        const int other = f->bodies.box[f->bodies.list[q]].fem;
+        anew = anew || (other >= 0 && s->motion.anew[other]);
+    }
+    return anew;
+}
+
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
                              brunt_constraint_set *constraints, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
-    for (int32_t n = 0; s->motion.anew && f->cache.node && n < s->node_count; n++)
-        f->cache.node[n] = (node_distance){0}; // a body is new: nothing is known of distances
+    for (int k = 0; k < s->fem_count && f->cache.node; k++)
+        if (is_anew(s, f, k))
+            for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) f->cache.node[n] = (node_distance){0};
     if (!f->bodies.pair_count) return BRUNT_OK;
     if (brunt_facet_cells_make(m, f, error)) return BRUNT_FAILED;
     search_job j = {.m = m, .f = f, .constraints = constraints};

@@ -28,7 +28,7 @@ static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces,
 // clang-format off
 #define BODY_ARRAYS(X) \
     X(fem) X(node_range) X(face_range) X(low) X(high) X(active) X(node_end) X(face_end) X(motion.mean) X(motion.speed) \
-    X(motion.was_active) X(motion.kept) X(motion.travel) X(motion.zone)
+    X(motion.was_active) X(motion.anew) X(motion.kept) X(motion.travel) X(motion.zone)
 #define NODE_ARRAYS(X) \
     X(x, 1) X(v, 1) X(old, 1) X(mass, 1) X(inverse, 1) X(normal, 1) X(area, 1) X(face_first, 1) X(output.gap, 1) \
     X(output.impulse, 1) X(output.state, 1) X(motion.near, 1) X(motion.was, 1) X(affine, s->affine) X(membrane.front, s->membrane.front)
@@ -230,6 +230,7 @@ void brunt_surface_free(brunt_contact_surface *s) {
                      s->face_area,
                      s->face_box,
                      s->motion.was_active,
+                     s->motion.anew,
                      s->motion.kept,
                      s->motion.travel,
                      s->motion.zone,

@@ -63,7 +63,7 @@ typedef struct brunt_surface_motion {
     double *apart;     // [m] of each group of chunks: the most that one of their nodes has moved against what is near
                        // of it since they were gathered last ...
     int32_t group;     // ... which is so many chunks
-    bool anew;         // bodies became active: where they were before is not known
+    bool *anew;        // of each body: it became active, and where it was before is not known
     double (*zone)[6]; // [m] low, high of the room about all that is near each active body. All there is unless told
     uint8_t *near;     // of each node of active bodies: a face of it reaches into that room, or it has none
     double (*was)[3];  // [m] of each: where it was when it was gathered last

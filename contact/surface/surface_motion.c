@@ -296,9 +296,8 @@ void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const doubl
     brunt_parallel(threads, (s->face_count + GRAIN - 1) / GRAIN, 1, make_face_chunks, &j, timer);
     if (s->fem_count) brunt_parallel(threads, brunt_surface_chunks(s), 1, gather_chunks, &j, timer);
     brunt_surface_compare_ways(s, threads, timer);
-    s->motion.anew = false;
     for (int k = 0; k < s->fem_count; k++) {
-        s->motion.anew = s->motion.anew || (s->active[k] && !s->motion.was_active[k]);
+        s->motion.anew[k] = s->active[k] && !s->motion.was_active[k];
         s->motion.was_active[k] = s->active[k];
     }
 }

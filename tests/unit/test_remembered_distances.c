@@ -1,5 +1,5 @@
 // What the search for contact remembers of nodes from step to step saves work and changes nothing: a world that forgets
-// it before every step comes to the same bits.
+// it before every step comes to the same bits, and so does one that leaves nothing out of the search.
 #include "contact/distance/point_facet.h"
 #include "contact/search/node_to_facet_parts.h"
 #include "world/world.h"
@@ -91,6 +91,17 @@ static int32_t count_unlisted(const brunt_contact *contact) {
     return unlisted;
 }
 
+static void compare_velocities(brunt_world *one, brunt_world *other, int step) {
+    for (int b = 0; b < brunt_body_count(one); b++) {
+        double *p = world_field(one, b, "velocity"), *q = world_field(other, b, "velocity");
+        const int64_t count = brunt_body_size(one, b, BRUNT_AT_NODES);
+        for (int64_t i = 0; i < 3 * count; i++)
+            ck_assert_msg(p[i] == q[i], "step %d, node %d of body %d: %.17g, not %.17g", step, (int)(i / 3), b, p[i],
+                          q[i]);
+        free(p), free(q);
+    }
+}
+
 START_TEST(what_is_remembered_changes_nothing) {
     brunt_world *one = make(_i), *other = make(_i);
     int64_t remembered = 0, listed = 0, met = 0;
@@ -103,14 +114,7 @@ START_TEST(what_is_remembered_changes_nothing) {
                 listed += contact->node_to_facet->cache.node[n].beyond > 0;
         met += contact->constraints.constraint_count;
         if (s % 8 == 7 && contact->node_to_facet) ck_assert_int_eq(count_unlisted(contact), 0);
-        for (int b = 0; b < brunt_body_count(one); b++) {
-            double *p = world_field(one, b, "velocity"), *q = world_field(other, b, "velocity");
-            const int64_t count = brunt_body_size(one, b, BRUNT_AT_NODES);
-            for (int64_t i = 0; i < 3 * count; i++)
-                ck_assert_msg(p[i] == q[i], "step %d, node %d of body %d: %.17g, not %.17g", s, (int)(i / 3), b, p[i],
-                              q[i]);
-            free(p), free(q);
-        }
+        compare_velocities(one, other, s);
     }
     printf("  case %d: %lld times a node was remembered, %lld times facets beside it, %lld constraints\n", _i,
            (long long)remembered, (long long)listed, (long long)met);
@@ -121,8 +125,51 @@ START_TEST(what_is_remembered_changes_nothing) {
 }
 END_TEST
 
+// Cubes at all distances from each other that fall on a floor, hit and leave each other, in either order.
+static brunt_world *make_crowd(bool reversed) {
+    enum { CUBES = 9 }; // the last comes late to those that have met
+    brunt_world_def def = def_begin(3, 1);
+    def_material(&def, "neo-hookean", 1000, 1e7, 0.3);
+    for (int i = 0; i < CUBES; i++) {
+        const int k = reversed ? CUBES - 1 - i : i, x = k & 1, y = k >> 1 & 1, z = k >> 2;
+        const bool late = k == 8;
+        const double at[3] = {late ? 0.4 : 1.02 * x + 0.3 * y, late ? 0.5 : 1.08 * y + 0.04 * x,
+                              late ? -1.16 : 1.15 * z - 0.02 * x};
+        char name[16];
+        snprintf(name, sizeof name, "cube %d", k);
+        brunt_body_def *b = def_box(&def, name, at, XYZ(at[0] + 1, at[1] + 1, at[2] + 1));
+        b->method = BRUNT_FEM, b->element = k % 3 ? BRUNT_TET4 : BRUNT_HEX8, b->size = 0.25;
+        def_velocity(b, x ? -0.5 : 0.5, y ? -2 : -0.25, late ? 2 : z ? -1.5 : 0.75);
+    }
+    def_plane(&def, XYZ(0, -0.05, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0.2);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    def.contact.friction = 0.1;
+    return world_take(&def);
+}
+
+START_TEST(who_is_left_out_is_reached_by_nothing) {
+    brunt_world *one = make_crowd(_i), *other = make_crowd(_i);
+    int left_out = 0, met = 0, most = 0;
+    for (int s = 0; s < 4 * STEPS; s++) {
+        const brunt_contact_surface *surface = &one->contact.surface;
+        for (int k = 0; k < surface->fem_count; k++) other->contact.surface.motion.was_active[k] = true;
+        world_steps(one, 1), world_steps(other, 1);
+        for (int k = 0; k < surface->fem_count; k++)
+            left_out += !surface->active[k] && other->contact.surface.active[k];
+        met += one->contact.constraints.constraint_count;
+        most = one->contact.constraints.constraint_count > most ? one->contact.constraints.constraint_count : most;
+        compare_velocities(one, other, s);
+    }
+    printf("  cubes: %d times one was left out of the search, %d constraints, %d at once\n", left_out, met, most);
+    ck_assert_int_gt(left_out, STEPS);
+    ck_assert_int_gt(most, 100);
+    brunt_world_destroy(one), brunt_world_destroy(other);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("remembered distances");
     ADD_LOOP(what_is_remembered_changes_nothing, CASES);
+    ADD_LOOP(who_is_left_out_is_reached_by_nothing, 2);
     return suite_main(suite);
 }
