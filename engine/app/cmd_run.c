@@ -1,7 +1,5 @@
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 #include "app/app.h"
 #include "base/parallel.h"
@@ -28,14 +26,6 @@ static void handle(int number, void (*handler)(int)) {
     sigaction(number, &action, NULL);
 }
 
-// Threads that wait at the end of a pass spin for a moment, then sleep. libgomp's own choice is to spin for
-// milliseconds, which on a machine with other work keeps the very thread waited for from running: two threads were 20
-// times slower than one there. It reads the variable when it is loaded, hence the second start.
-static void start_with_short_spins(char **argv) {
-    if (getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY")) return;
-    if (setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv - 1);
-}
-
 int cmd_run(int argc, char **argv) {
     app_arguments arguments;
     int status =
@@ -45,7 +35,6 @@ int cmd_run(int argc, char **argv) {
                   APP_OUTPUT | APP_THREADS | APP_SET | APP_RESUME | APP_FRESH | APP_PROFILE | APP_TRACE | APP_QUIET,
                   true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
-    if (arguments.threads != 1) start_with_short_spins(argv);
     brunt_parallel_adapt(true);
     // A run of hours must not end because the reader of its output has gone, nor without a word because a file may not
     // grow.

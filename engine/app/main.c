@@ -1,6 +1,7 @@
 // The program: picks a command.
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
@@ -33,6 +34,16 @@ static const char help[] =
     "Exit codes: 0 done, 64 bad command line, 65 bad input, 70 the computation failed, 74 file system, 75 stopped: "
     "--resume goes on.\n"
     "A run asked to stop (SIGTERM, SIGINT, SIGHUP) writes a checkpoint first; SIGUSR1 writes one and goes on.\n";
+
+// Threads that wait at the end of a pass spin for a moment, then sleep. The choice of libgomp is to spin for
+// milliseconds, that of libomp for 200, which on a machine with other work keeps the very thread waited for from
+// running: two threads were 20 times slower than one there. They read these as they start: libomp with its first
+// threads, libgomp after this where it is of the program (CMakeLists.txt), a shared one before.
+__attribute__((constructor(101))) static void spin_shortly(void) {
+    if (getenv("OMP_WAIT_POLICY")) return;
+    setenv("GOMP_SPINCOUNT", "10000", 0);
+    setenv("KMP_BLOCKTIME", "1", 0); // [ms]
+}
 
 // What was asked for is on the terminal or in its file, or the exit code says that it is not.
 static int printed(int status) {

@@ -42,33 +42,46 @@ typedef struct direct {
 #define RINFOG(d, i) ((d)->id.rinfog[(i)-1])
 #define CNTL(d, i) ((d)->id.cntl[(i)-1])
 
-// It has global variables: one call at a time.
+// The library, loaded for the first matrix. It has global variables: one call at a time.
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+static void (*mumps)(DMUMPS_STRUC_C *); // dmumps_c
 
 static void call(direct *d, int job) {
     d->id.job = job;
     pthread_mutex_lock(&one_at_a_time);
-    dmumps_c(&d->id);
+    mumps(&d->id);
     pthread_mutex_unlock(&one_at_a_time);
 }
 
 // OpenBLAS with threads of its own changes sums with their number, and is slower on the small blocks that are most.
-static void one_thread_for_blas(void) {
+static void one_thread_for_blas(void *library) {
     void (*set_threads)(int);
-    void *found = dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
+    void *found = dlsym(library, "openblas_set_num_threads");
     if (!found) return;
     memcpy(&set_threads, &found, sizeof found);
     set_threads(1);
 }
 
-static void *make(int symmetry) {
-    direct *d = brunt_alloc(sizeof *d);
-    if (!d) return NULL;
-    one_thread_for_blas();
+static int load(brunt_error *error) {
+    pthread_mutex_lock(&one_at_a_time);
+    void *library = mumps ? NULL : dlopen(BRUNT_MUMPS, RTLD_NOW), *found = library ? dlsym(library, "dmumps_c") : NULL;
+    if (found) {
+        one_thread_for_blas(library);
+        memcpy(&mumps, &found, sizeof found);
+    }
+    const int status = mumps ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "MUMPS cannot be loaded: %s.", dlerror());
+    pthread_mutex_unlock(&one_at_a_time);
+    return status;
+}
+
+static void *make(int symmetry, brunt_error *error) {
+    direct *d;
+    if (load(error) || BRUNT_NEW(d, 1, "the direct solver", error)) return NULL;
     d->id.par = 1, d->id.sym = symmetry, d->id.comm_fortran = COMM_WORLD;
     call(d, JOB_BEGIN);
     d->begun = INFOG(d, 1) >= 0;
     if (!d->begun) {
+        brunt_fail(error, BRUNT_FAILED, "MUMPS could not be set up: INFOG(1) = %d.", INFOG(d, 1));
         brunt_free(d);
         return NULL;
     }
@@ -84,8 +97,8 @@ static void *make(int symmetry) {
     return d;
 }
 
-static void *direct_make(void) { return make(SYMMETRIC_DEFINITE); }
-static void *unsymmetric_make(void) { return make(UNSYMMETRIC); }
+static void *direct_make(brunt_error *error) { return make(SYMMETRIC_DEFINITE, error); }
+static void *unsymmetric_make(brunt_error *error) { return make(UNSYMMETRIC, error); }
 
 static void direct_free(void *self) {
     direct *d = self;

@@ -19,8 +19,8 @@ int brunt_linear_open(brunt_linear *s, const brunt_linear_ops *ops, const brunt_
                       brunt_error *error) {
     if (s->ops != ops) {
         brunt_linear_close(s);
-        s->self = ops->make();
-        if (!s->self) return brunt_fail(error, BRUNT_FAILED, "The solver %s could not be set up.", ops->name);
+        s->self = ops->make(error);
+        if (!s->self) return BRUNT_FAILED;
         s->ops = ops;
     }
     s->options = *options;

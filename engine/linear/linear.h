@@ -54,7 +54,7 @@ typedef struct brunt_linear brunt_linear;
 
 typedef struct brunt_linear_ops {
     const char *name;
-    void *(*make)(void);
+    void *(*make)(brunt_error *e); // NULL: it cannot be set up, and `e` says why
     // All that follows from the pattern; then from the values; then x for a b. In this order, each as often as wanted.
     brunt_linear_status (*analyse)(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
                                    brunt_error *e);

@@ -22,7 +22,10 @@ typedef struct pcg {
 static const double raises[] = {1, 1.03, 1.1};
 enum { RAISES = sizeof raises / sizeof *raises };
 
-static void *pcg_make(void) { return brunt_alloc(sizeof(pcg)); }
+static void *pcg_make(brunt_error *error) {
+    pcg *self;
+    return BRUNT_NEW(self, 1, "conjugate gradients", error) ? NULL : self;
+}
 
 static void pcg_free(void *self) {
     pcg *g = self;

@@ -1,0 +1,36 @@
+// What the program does before it does anything: libraries that it loads, how long threads are to spin.
+#include "tests/support/small_program.h"
+
+// The loader's list, without a run. MUMPS, and the BLAS that starts threads, are loaded where matrices are factored;
+// of HDF5 nothing is taken that fetches files from elsewhere.
+START_TEST(few_libraries) {
+    ck_assert_int_eq(small_shell("LD_TRACE_LOADED_OBJECTS=1 $B > list && grep -q libc.so list"), 0);
+    ck_assert_msg(small_shell("grep -iE 'mumps|blas|lapack|curl|crypto' list") == 1, "see above");
+}
+END_TEST
+
+static int spins(const char *set, const char *wanted) {
+    return small_shell("env -u OMP_WAIT_POLICY %s OMP_DISPLAY_ENV=verbose KMP_SETTINGS=1 $B check small.yaml --quick "
+                       "-t 2 2>&1 | grep -iE 'SPINCOUNT|BLOCKTIME' > list; grep -qE \"%s\" list",
+                       set, wanted);
+}
+
+// The program says it unless the user has.
+START_TEST(short_spins) {
+    small_put("small.yaml", small_scene_text);
+    ck_assert_int_eq(spins("", "GOMP_SPINCOUNT = '10000'|KMP_BLOCKTIME=1$"), 0);
+    ck_assert_int_eq(spins("GOMP_SPINCOUNT=77 KMP_BLOCKTIME=7", "GOMP_SPINCOUNT = '77'|KMP_BLOCKTIME=7$"), 0);
+    ck_assert_int_eq(spins("OMP_WAIT_POLICY=passive", "GOMP_SPINCOUNT = '0'|KMP_BLOCKTIME=0$"), 0);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("program_start");
+    TCase *tests = tcase_create("start");
+    tcase_add_checked_fixture(tests, small_folder_make, small_folder_remove);
+    tcase_set_timeout(tests, 0);
+    tcase_add_test(tests, few_libraries);
+    tcase_add_test(tests, short_spins);
+    suite_add_tcase(suite, tests);
+    return suite_main(suite);
+}
