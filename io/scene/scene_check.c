@@ -16,23 +16,33 @@ static void check_group(scene_reader *reader, scene_node *node, const char *patt
 
 // ---------------------------------------------------------------------------------------------------- groups
 
-// The model that a map of parameters belongs to, NULL when it names none that exists.
+// The model that a map of parameters belongs to: where its name is misspelt the one that is meant, so that what else is
+// wrong there is said at once. NULL: it names none.
 static const brunt_model *model_of(const scene_node *map, const char *path) {
     if (strncmp(path, "materials.*.viscosity.", 22) == 0) return &brunt_bulk_viscosity;
     const scene_node *name = brunt_tree_child(map, "model");
     if (!name || name->kind != SCENE_SCALAR) return NULL;
-    return brunt_scene_model(path, name->text);
+    const brunt_model *model = brunt_scene_model(path, name->text);
+    const char *names[NAMES_LIMIT];
+    int count;
+    const brunt_model *const *models = brunt_scene_models(path, &count);
+    for (int m = 0; m < count; m++) names[m] = models[m]->name;
+    const char *meant = model ? NULL : brunt_nearest_name(name->text, names, count);
+    return meant ? brunt_scene_model(path, meant) : model;
+}
+
+static const brunt_parameter *find_parameter(const brunt_model *model, const char *key) {
+    for (int p = 0; p < model->parameter_count; p++)
+        if (strcmp(model->parameters[p].key, key) == 0) return &model->parameters[p];
+    return NULL;
 }
 
 // A failure model takes what it shares with the strength model from there.
 static bool is_shared(const scene_node *map, const scene_key *slot, const char *key) {
     if (strncmp(slot->path, "materials.*.failure.", 20) != 0 || !map->parent) return false;
-    const scene_node *name = brunt_tree_child(map->parent, "model"); // which may be typed, and checked, after `failure`
-    if (!name || name->kind != SCENE_SCALAR) return false;
-    const brunt_model *strength = brunt_find_strength(name->text);
-    for (int p = 0; strength && p < strength->parameter_count; p++)
-        if (strcmp(strength->parameters[p].key, key) == 0) return true;
-    return false;
+    // Its name may be typed, and checked, after `failure`.
+    const brunt_model *strength = model_of(map->parent, "materials.*.<parameter>");
+    return strength && find_parameter(strength, key);
 }
 
 static const scene_key *parameter_row(scene_reader *reader, const scene_key *slot, const brunt_parameter *parameter,
@@ -133,12 +143,11 @@ static void complain_unknown(scene_reader *reader, scene_node *child, const char
         int models;
         const brunt_model *const *list = brunt_scene_models(path, &models);
         for (int m = 0; m < models && !nearest; m++)
-            for (int p = 0; p < list[m]->parameter_count; p++)
-                if (strcmp(list[m]->parameters[p].key, child->key) == 0) {
-                    brunt_tree_complain_key(tree, child, "this is a parameter of %s, not of %s", list[m]->name,
-                                            model->name);
-                    return;
-                }
+            if (find_parameter(list[m], child->key)) {
+                brunt_tree_complain_key(tree, child, "this is a parameter of %s, not of %s", list[m]->name,
+                                        model->name);
+                return;
+            }
     }
     // Shapes are few, and a cube is no tube: all are said.
     if (nearest && strcmp(pattern, "<shape>") != 0) {
@@ -150,19 +159,41 @@ static void complain_unknown(scene_reader *reader, scene_node *child, const char
     brunt_tree_complain_key(tree, child, "unknown key; there are: %s", all);
 }
 
+static bool alike(const brunt_parameter *a, const brunt_parameter *b) {
+    return a->min == b->min && a->max == b->max && a->min_open == b->min_open && a->max_open == b->max_open &&
+           strcmp(a->unit, b->unit) == 0;
+}
+
+// Of a map whose model is not known: what all models that have the key say of its value.
+static void check_of_any(scene_reader *reader, scene_node *child, const scene_key *slot, const char *const *known,
+                         int count) {
+    const brunt_parameter *found = NULL;
+    int models;
+    bool same = true;
+    const brunt_model *const *list = brunt_scene_models(slot->path, &models);
+    for (int m = 0; m < models; m++) {
+        const brunt_parameter *parameter = find_parameter(list[m], child->key);
+        same = same && (!parameter || !found || alike(parameter, found));
+        if (parameter && !found) found = parameter;
+    }
+    const scene_key *row = found && same ? parameter_row(reader, slot, found, true) : NULL;
+    if (row) check_value(reader, child, row);
+    if (!found) complain_unknown(reader, child, "", known, count, NULL);
+}
+
 typedef struct group_rows {
     const scene_key *row[NAMES_LIMIT];
     const char *key[NAMES_LIMIT];
     int order[NAMES_LIMIT];
     int count;
     const brunt_model *model;
-    bool model_unknown;
+    const scene_key *unknown; // parameters of a model that is not known; NULL: there are none
 } group_rows;
 
 static void collect_rows(scene_reader *reader, const scene_node *node, const char *pattern, group_rows *rows) {
     rows->count = 0;
     rows->model = NULL;
-    rows->model_unknown = false;
+    rows->unknown = NULL;
     const scene_format *format = reader->tree->format;
     for (int i = 0; i < *format->row_count; i++) {
         const scene_key *row = &format->rows[i];
@@ -171,7 +202,7 @@ static void collect_rows(scene_reader *reader, const scene_node *node, const cha
         if (row->dimension && reader->dimension && row->dimension != reader->dimension) continue;
         if (row->type == SCENE_PARAMETERS) {
             rows->model = model_of(node, row->path);
-            rows->model_unknown = !rows->model;
+            if (!rows->model) rows->unknown = row;
             for (int p = 0; rows->model && p < rows->model->parameter_count && rows->count < NAMES_LIMIT; p++) {
                 const scene_key *made = parameter_row(reader, row, &rows->model->parameters[p],
                                                       is_shared(node, row, rows->model->parameters[p].key));
@@ -277,7 +308,9 @@ static void check_group(scene_reader *reader, scene_node *node, const char *patt
         const scene_key *other = brunt_format_row(reader->tree->format, path);
         if (other && other->dimension)
             brunt_tree_complain_key(reader->tree, child, "there is none in %d dimensions", reader->dimension);
-        else if (!rows.model_unknown)
+        else if (rows.unknown)
+            check_of_any(reader, child, rows.unknown, rows.key, rows.count);
+        else
             complain_unknown(reader, child, pattern, rows.key, rows.count, rows.model);
     }
     for (int r = 0; r < rows.count; r++)
