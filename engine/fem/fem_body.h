@@ -148,6 +148,7 @@ struct brunt_fem_body {
     double scaled_edge;      // [m] where mass scaling acts: the longest edge in which a wave of the unscaled material
                              // takes as long as in a scaled element (its mean edge); 0: nowhere
     double least_step;       // [s] stable step of the undeformed mesh
+    bool fold_told;          // a warning has said that elements are folded
     real time;               // [s] at the end of the step, for materials that burn
 };
 

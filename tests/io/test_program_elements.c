@@ -269,6 +269,27 @@ START_TEST(mesh_files_of_boundaries_and_grid) {
 }
 END_TEST
 
+// Nodes that fly to and fro in turns: 1 m/s against each other, so that after 0.05 s the half of elements of 0.1 m is
+// used up. Told once, of what elements with one point do alone, and not before.
+START_TEST(folded_elements_are_told) {
+    static const char scene[] =
+        "brunt: 1\ndimension: 2\ntime: {end: 0.06}\n"
+        "materials: {m: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.3}}\n"
+        "bodies: {a: {method: fem, material: m, element: quad4, size: 0.1, shape: {box: {min: [0, 0], max: [0.4, "
+        "0.4]}}, "
+        "hourglass: {coefficient: 0}, "
+        "wave: {velocity: [1, 0], wave_vector: [31.41592653589793, 31.41592653589793], phase: 90 deg}}}\n"
+        "output: {every: none}\n";
+    small_write(small_path("folds.yaml"), scene, sizeof scene - 1);
+    contains(shell(0, "$P run folds.yaml -o f -t 1"),
+             "warning: bodies.a: at t = 0.06 s 16 of 16 elements are turned inside out at a corner");
+    shell(0, "$P run folds.yaml -o g -t 1 --set time.end=2 --set time.energy_limit=1000 | grep -c 'inside out' | grep "
+             "-qx 1");
+    shell(1, "$P run folds.yaml -o h -t 1 --set time.end=0.04 | grep 'inside out'");
+    shell(1, "$P run folds.yaml -o i -t 1 --set bodies.a.hourglass.coefficient=0.05 | grep 'inside out'");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_elements");
     TCase *runs = tcase_create("runs");
@@ -281,6 +302,7 @@ int main(void) {
     tcase_add_test(runs, check_and_warnings);
     tcase_add_test(runs, mesh_files);
     tcase_add_test(runs, mesh_files_of_boundaries_and_grid);
+    tcase_add_test(runs, folded_elements_are_told);
     suite_add_tcase(suite, runs);
     return suite_main(suite);
 }
