@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """What collisions give back: meshes with `contact.touch` inelastic and elastic, material points with `contact.stop` hard and spring.
 
-usage: collisions.py [PART...]     parts: blocks bars chain points rest (default: all; from the top of the tree, a quarter of an hour of one core)
+usage: collisions.py [PART...]     parts: blocks bars chain times points rest (default: all; from the top of the tree, a quarter of an hour of one core)
 
 Writes a row a run to collisions.csv (parts that are not run keep theirs) and all of them as tables to collisions.md. BRUNT names the program (default
 build/brunt), STUDY the other (build/bench/contact_study). blocks: two cubes, a corner and a face (contact_study.c). bars: equal ones, one twice as long, and a rod on a wall
 (d'Alembert: all energy and momentum change hands, the force is rho c v A / 2). chain: three and five equal balls that touch as the first is hit; the closed form is
-sum of Newton's equations with forces d^(3/2), integrated here. points: a ball on a plane, two disks, two spheres. rest: a stack, 1e5
+sum of Newton's equations with forces d^(3/2), integrated here. times: what an error of 2 % of the velocity costs of bars and chain. points: a ball on a plane, two disks, two spheres. rest: a stack, 1e5
 steps. What it costs is counted in tests/stability/test_cost.c.
 """
-import csv, json, os, re, subprocess, sys, tempfile
+import csv, json, math, os, re, subprocess, sys, tempfile
 
 HERE = "bench/studies/collisions"
 BRUNT, STUDY = (os.path.abspath(os.environ.get(*name)) for name in (("BRUNT", "build/brunt"), ("STUDY", "build/bench/contact_study")))
@@ -73,7 +73,7 @@ def output(words):
 
 
 def measured(scene, sets=()):
-    """Measures of a scene, a file or its text, and the seconds of its steps."""
+    """Measures of a scene, a file or its text, and the seconds of its steps: of the clock, or of the processor where other work takes turns."""
     with tempfile.TemporaryDirectory() as folder:
         if "\n" in scene:
             with open(folder + "/scene.yaml", "w") as file:
@@ -82,7 +82,8 @@ def measured(scene, sets=()):
         sets = ["output.every=none", "output.checkpoint=none", *sets]
         output([BRUNT, "run", scene, "-t", "1", "-q", "--fresh", "-o", folder + "/out"] + [w for s in sets for w in ("--set", s)])
         with open(folder + "/out/summary.json") as file:
-            return {name: m["value"] for name, m in json.load(file)["measures"].items() if m["value"] is not None}
+            summary = json.load(file)
+        return {name: m["value"] for name, m in summary["measures"].items() if m["value"] is not None} | {"seconds": min(summary["step_s"], summary["cpu_s"])}
 
 
 def blocks():
@@ -139,15 +140,59 @@ def hertz(count, step=1e-3):
     return v
 
 
+def balls_in_a_row(count, size, touch):
+    balls = "".join(BALL % (k, size, 0.1 * k, 10 if k == 0 else 0) for k in range(count))
+    measures = "".join(f"  v{k}: {{history: body.b{k}.velocity_y, relative_to: 10 m/s}}\n" for k in range(count))
+    return CHAIN % (1.6e-4 * (count + 0.2), balls, touch, measures)
+
+
 def chain():
     for count in (3, 5):
         exact = {f"v{k}": v for k, v in enumerate(hertz(count))}
         yield "chain", f"{count} balls", "closed form", "", exact
         for size in (4, 2, 1, 0.5) if count == 3 else (2, 1):
             for touch in TOUCHES:
-                balls = "".join(BALL % (k, size, 0.1 * k, 10 if k == 0 else 0) for k in range(count))
-                measures = "".join(f"  v{k}: {{history: body.b{k}.velocity_y, relative_to: 10 m/s}}\n" for k in range(count))
-                yield "chain", f"{count} balls", f"quad4 h={size} mm", touch, measured(CHAIN % (1.6e-4 * (count + 0.2), balls, touch, measures))
+                yield "chain", f"{count} balls", f"quad4 h={size} mm", touch, measured(balls_in_a_row(count, size, touch))
+
+
+def times():
+    """Error of velocities over the time of the steps, the least of many in turns, as other work on the machine adds to some."""
+    def scene(case, element, size, touch):
+        return BARS % (45, element, size, element, size, 10, touch) if case == "10 on 10" else balls_in_a_row(3, size, touch)
+
+    exact = hertz(3)
+    for case, element, sizes in (("10 on 10", "tet4", (2, 1, 0.5, 0.25)), ("10 on 10", "hex8", (2, 1, 0.5, 0.25)), ("3 balls", "quad4", (4, 2, 1))):
+        for size in sizes:
+            runs = {touch: [] for touch in TOUCHES}
+            for _ in range(30 if case == "10 on 10" else 7):
+                for touch in TOUCHES:
+                    runs[touch].append(measured(scene(case, element, size, touch)))
+            for touch, found in runs.items():
+                error = abs(found[0]["given"] - 1) if "given" in found[0] else max(abs(found[0][f"v{k}"] - v) for k, v in enumerate(exact))
+                yield "times", case, f"{element} h={size}{' mm' if case == '3 balls' else ''}", touch, {"off": error, "seconds": min(f["seconds"] for f in found)}
+
+
+def time_to(runs, error=0.02):
+    """Seconds that an error takes, by a line through logarithms of the two meshes about it; of (off, seconds), coarsest first. A mesh
+    that is better from the start: its seconds, and that it is less. None: no mesh is that good."""
+    for k, (off, seconds) in enumerate(runs):
+        if off <= error and k == 0:
+            return seconds, "<"
+        if off <= error:
+            before, then = runs[k - 1]
+            return then * (seconds / then) ** (math.log(error / before) / math.log(off / before)), ""
+    return None
+
+
+def times_to(groups):
+    """Lines of a table: time to 2 % of each case by either touch, and by what factor it falls."""
+    runs = {}
+    for (case, of, touch), found in groups.items():
+        runs.setdefault((case, of.split()[0]), {}).setdefault(touch, []).append((float(found["off"]), float(found["seconds"])))
+    yield "| 2 % of | inelastic [s] | elastic [s] | factor |\n| --- | --- | --- | --- |\n"
+    for (case, element), by in runs.items():
+        (slow, _), (quick, less) = time_to(by["inelastic"]), time_to(by["elastic"])
+        yield f"| {case}, {element} | {slow:.3g} | {less}{quick:.3g} | {'>' if less else ''}{slow / quick:.3g} |\n"
 
 
 def points():
@@ -193,13 +238,14 @@ def rest():
             yield "rest", "stack", f"{element} mu=0.5", touch, dict(re.findall(r"(pen|sink2nd|lateral|KE/mgh|N/mg-1)=([-+.\deE]+)", line))
 
 
-PARTS = {f.__name__: f for f in (blocks, bars, chain, points, rest)}
-SHOWN = {"blocks": ("E/E0", "max", "contact", "error", "pen", "dP", "dL"), "bars": ("kept", "most", "left", "given", "peak", "impulse"), "chain": ("v0", "v1", "v2", "v3", "v4", "kept"),
+PARTS = {f.__name__: f for f in (blocks, bars, chain, times, points, rest)}
+SHOWN = {"blocks": ("E/E0", "max", "contact", "error", "pen", "dP", "dL"), "bars": ("kept", "most", "left", "given", "peak", "impulse"), "chain": ("v0", "v1", "v2", "v3", "v4", "kept"), "times": ("off", "seconds"),
          "points": ("restitution", "force", "energy_kept", "kinetic_kept", "kinetic_left", "friction_work", "lost_in_contact"), "rest": ("force", "height", "speed", "lost", "pen", "sink2nd", "lateral", "KE/mgh", "N/mg-1")}
 SAID = {
     "blocks": "Blocks of meshes\n\nE/E0: share of the energy at the end; max: the greatest at any sample; contact: what contact holds or has lost; error: of the ledger; pen: greatest depth of a boundary node [h]; dP, dL: drifts. h=0.5 and no friction unless said. With friction what it does is lost, too.",
     "bars": "Bars, a rod on a wall, a ball on a plane\n\nShares: kept and most of the energy at the start; left, of the striker's velocity (0 of two equal bars and of one on a longer one; rod and ball: what comes back, 1); given (1; 0.5 on twice the length); peak over the closed form's force, impulse likewise.",
     "chain": "Balls in a row\n\nVelocities after the first has hit the others, which touch, with 10 m/s (steel, radius 50 mm); the closed form is that of rigid balls with Hertz's springs.",
+    "times": "What 2 % takes\n\noff: speed given on by bars (1), velocities of balls, the worst of them, as shares of the striker's; seconds of the steps, one core of an Intel Xeon (bench/machines), the least of 30 (bars) and 7 (balls) in turns. Below: time to 2 %, by lines through logarithms; <: the coarsest mesh is better.",
     "points": "Material points\n\nrestitution and force [N] of a ball on a plane; energy kept (kinetic and stored), kinetic share, work of friction [J].",
     "rest": "At rest\n\n1e5 steps of three blocks on each other, a quarter between planes of symmetry (without friction whole ones slide off, by either touch): force over the weight, height of the upper one [m], its speed at most [m/s], what contact took; of whole ones depth, sinking and sliding [h], kinetic energy and force.",
 }
@@ -220,6 +266,8 @@ def write(rows):
             file.write("\n## " + SAID[part] + "\n\n| case | of | touch or stop | " + " | ".join(shown) + " |\n|" + " --- |" * (len(shown) + 3) + "\n")
             for (case, of, kind), found in groups[part].items():
                 file.write(f"| {case} | {of} | {kind} | " + " | ".join(found.get(f, "") for f in shown) + " |\n")
+            if part == "times":
+                file.write("\n" + "".join(times_to(groups[part])))
 
 
 def main(parts):
