@@ -8,6 +8,8 @@
 
 #include <math.h>
 
+#include "base/simd.h"
+
 int brunt_extent_runs(const brunt_body *body, int32_t slot, int node, brunt_slot_run runs[BRUNT_MAX_SLOT_RUNS]) {
     const brunt_grid *grid = &body->grid;
     const int deep = grid->dim == 3 ? grid->order : 0;
@@ -72,8 +74,8 @@ void brunt_extent_deformed(brunt_body *body, int32_t slot, int node, double x[3]
 }
 
 // F^T n of a particle.
-static void pull_back(brunt_body *body, int64_t s, const double n[3], double out[3]) {
-    const int dim = body->particles.dim, stride = body->particles.point_dim;
+BRUNT_INLINE void pull_back(brunt_body *body, int64_t s, int dim, const double n[3], double out[3]) {
+    const int stride = body->particles.point_dim;
     real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
     for (int c = 0; c < 3; c++) {
         out[c] = 0;
@@ -81,11 +83,23 @@ static void pull_back(brunt_body *body, int64_t s, const double n[3], double out
     }
 }
 
-double brunt_extent_along(brunt_body *body, int64_t s, const double n[3]) {
+BRUNT_INLINE double extent_along(brunt_body *body, int64_t s, int dim, const double n[3]) {
     double t[3];
-    pull_back(body, s, n, t);
+    pull_back(body, s, dim, n, t);
     return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s] *
            sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+}
+
+double brunt_extent_along(brunt_body *body, int64_t s, const double n[3]) {
+    return body->particles.dim == 3 ? extent_along(body, s, 3, n) : extent_along(body, s, body->particles.dim, n);
+}
+
+void brunt_extent_fetch(brunt_body *body, int64_t s) {
+    const int dim = body->particles.dim, stride = body->particles.point_dim;
+    real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+    __builtin_prefetch(&brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s]);
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) __builtin_prefetch(&F[r * stride + c][s]);
 }
 
 // The farthest point of the ellipsoid is x - r F t / |t|, t = F^T n: X - r t / |t| of the undeformed ball.
@@ -98,7 +112,7 @@ void brunt_extent_arm(brunt_body *body, int64_t s, const double n[3], double dis
     real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
     const double reach = (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s];
     double t[3];
-    pull_back(body, s, n, t);
+    pull_back(body, s, p->dim, n, t);
     for (int a = 0; a < 3; a++) kernel_arm[a] = -length * reach * reach / (extent * extent) * t[a];
     for (int r = 0; r < p->dim; r++) {
         arm[r] = 0;

@@ -18,6 +18,8 @@ void brunt_extent_deformed(brunt_body *body, int32_t slot, int node, double x[3]
 
 // How far the particle in a slot reaches from its centre along unit vector n [m].
 double brunt_extent_along(brunt_body *body, int64_t slot, const double n[3]);
+// Asks for the numbers that this will need.
+void brunt_extent_fetch(brunt_body *body, int64_t slot);
 // Where what the particle in a slot has around it meets something `distance` [m] away against unit vector n, once they
 // touch: from its centre, and the same where its kernel lives. Friction acts there.
 void brunt_extent_arm(brunt_body *body, int64_t slot, const double n[3], double distance, double arm[3],

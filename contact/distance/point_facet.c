@@ -1,4 +1,5 @@
 #include "contact/distance/point_facet.h"
+#include "contact/distance/quad.h"
 
 #include <math.h>
 #include <string.h>
@@ -68,13 +69,8 @@ static void triangle_of(const brunt_contact_surface *s, int32_t face, int t, con
 }
 
 // Of the four triangles of a quadrilateral about its centre, at once: triangle t has corners t and t + 1.
-typedef double quad __attribute__((vector_size(32)));
-typedef int64_t quad_mask __attribute__((vector_size(32)));
-
 static inline quad quad_dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static inline quad quad_dot_turned(const quad a[3], const quad b[3]) { return a[1] * b[1] + a[0] * b[0] + a[2] * b[2]; }
-static inline quad quad_set(double a) { return (quad){a, a, a, a}; }
-static inline quad quad_select(quad_mask m, quad a, quad b) { return (quad)(((quad_mask)a & m) | ((quad_mask)b & ~m)); }
 static inline quad next_corner(quad a) { return __builtin_shufflevector(a, a, 1, 2, 3, 0); }
 
 typedef struct four_triangles {
@@ -134,6 +130,41 @@ static inline void on_triangles(const four_triangles *f, const double x[3], quad
     for (int k = 0; k < 3; k++) d[k] = ap[k] - v * ab[k] - w * ac[k];
 }
 
+// Which of a quadrilateral's four triangles x is clearly over, as `sector` says where rounding does not matter; 4:
+// none.
+static inline int clear_sector(const brunt_contact_surface *s, int32_t face, const double x[3]) {
+    const double near = (1 + 1e-6) * NEAR_SPOKE * s->face_area[face], *centre = s->face_centre[face];
+    double r[3], m[3], turn[5];
+    bool clear = true;
+    for (int k = 0; k < 3; k++) r[k] = x[k] - centre[k];
+    cross(r, s->face_normal[face], m);
+    for (int t = 0; t < 4; t++) {
+        const double *corner = s->x[s->face[face][t]];
+        turn[t] = (corner[0] - centre[0]) * m[0] + (corner[1] - centre[1]) * m[1] + (corner[2] - centre[2]) * m[2];
+        clear = clear && fabs(turn[t]) > near;
+    }
+    turn[4] = turn[0];
+    int t = 0;
+    while (t < 4 && !(turn[t] > 0 && turn[t + 1] < 0)) t++;
+    return clear ? t : 4;
+}
+
+// The nearest point of a quadrilateral where it is inside the triangle that x is clearly over. Whether it is.
+static inline bool closest_in_sector(const brunt_contact_surface *s, int32_t face, const double x[3], double beyond,
+                                     brunt_closest *best) {
+    const int t = clear_sector(s, face, x);
+    if (t == 4) return false;
+    const double *p[3];
+    triangle_of(s, face, t, p);
+    on_triangle(p, x, best->d, &best->inside);
+    if (!best->inside) return false;
+    best->square = dot(best->d, best->d), best->triangle = t, best->triangles = 0;
+    if (best->square > beyond) return true;
+    unit_normal(p, best->normal);
+    for (int k = 0; k < 3; k++) best->normal[k] += 0., best->d[k] += 0.; // no zero has a sign, as in a mean
+    return true;
+}
+
 // Where one triangle has the nearest point, and not on its rim.
 static inline brunt_closest within_triangle(const brunt_contact_surface *s, int32_t face, int t, const quad way[3],
                                             double square) {
@@ -180,6 +211,8 @@ static brunt_closest on_rim(const brunt_contact_surface *s, int32_t face, int fi
 // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
 static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, int32_t face, const double x[3],
                                               double beyond) {
+    brunt_closest best = {.square = INFINITY};
+    if (closest_in_sector(s, face, x, beyond, &best)) return best;
     const four_triangles f = triangles_of(s, face);
     bool between;
     quad way[3];

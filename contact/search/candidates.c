@@ -1,5 +1,6 @@
 // What a place meets of each body near it: the facets in its cell, the nearest of them, and those beside that bear,
 // too.
+#include "contact/distance/quad.h"
 #include "contact/search/nearest.h"
 
 enum { AHEAD = 6 };                   // facets that are fetched meanwhile
@@ -8,6 +9,7 @@ static const double CLOSE = 0.25;     // ... so many mean edges, the least one w
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
 static const double MARGIN = 0.125;   // mean edges: facets so much further than the nearest are looked at closely, too
 static const double CLEAR = 1e-4;     // mean edges: distances of boxes that tell of those of the facets in them
+static const double NEARLY = 2e-6;    // ... beyond that share of their squares
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a eroded surface a place is still before it
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
@@ -25,7 +27,7 @@ static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, co
     return at;
 }
 
-static int64_t cell_of(const brunt_node_to_facet *f, const double x[3]) {
+int64_t brunt_candidates_cell(const brunt_node_to_facet *f, const double x[3]) {
     int64_t cell = 0;
     for (int a = 0; a < 3; a++) {
         double c = floor((x[a] - f->cells.shift[a] - f->cells.origin[a]) / f->cells.cell);
@@ -54,17 +56,19 @@ bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l) {
         l->touch[l->touches++] = other->body;
         if (!other->membrane && within(other, l->x, 0)) l->enter[l->enters++] = other->body;
     }
-    l->cell = l->touches ? cell_of(f, l->x) : BRUNT_NONE;
-    if (l->cell < 0) return false;
-    l->face = f->cells.face + f->cells.first[l->cell];
-    l->faces = f->cells.first[l->cell + 1] - f->cells.first[l->cell];
-    return true;
+    return l->touches > 0;
 }
 
 static bool is_among(int32_t body, const int32_t *list, int32_t count) {
     for (int32_t k = 0; k < count; k++)
         if (list[k] == body) return true;
     return false;
+}
+
+// What is looked through: the facets in the cell, or those listed when it last looked there.
+static inline const int32_t *facets_of(const brunt_node_to_facet *f, const search_query *l, int32_t *count) {
+    *count = l->beside ? l->besides : f->cells.first[l->cell + 1] - f->cells.first[l->cell];
+    return l->beside ? l->beside : f->cells.face + f->cells.first[l->cell];
 }
 
 // The two nearest facets of all, whichever way they face.
@@ -83,8 +87,8 @@ static void add_nearest(two_nearest *two, const brunt_closest *at, int32_t face)
         return;
     }
     const bool nearer = at->square < two->first - same;
-    two->second = fmax(two->first, at->square);
-    two->first = fmin(two->first, at->square);
+    two->second = two->first > at->square ? two->first : at->square;
+    two->first = two->first < at->square ? two->first : at->square;
     if (nearer || fabs(height) > fabs(two->height)) two->face = face, two->height = height, two->square = at->square;
 }
 
@@ -121,6 +125,72 @@ static inline bool beyond(const brunt_contact_surface *s, const double box[6], c
     return sum * (1 - 1e-6) > square && sum > clear * clear;
 }
 
+// Squares of the ways along the axes from x, of which the last number is none, to the box of a facet.
+static inline quad ways_to(const double box[6], quad x) {
+    const quad low = quad_load(box), last = quad_load(box + 2), high = __builtin_shufflevector(last, last, 1, 2, 3, 3),
+               way = quad_max(quad_max(low - x, x - high), (quad){0});
+    return way * way;
+}
+
+// Whether a cell has so few facets that their distances may be bounded first, and the nearest is of the body that is
+// near.
+static bool bound_distances(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
+                            facet_bounds *out) {
+    const int32_t *face = f->cells.face + f->cells.first[l->cell];
+    const int32_t count = f->cells.first[l->cell + 1] - f->cells.first[l->cell], last = count - 1;
+    if (l->touches != 1 || count == 0 || count > BRUNT_BOUNDED) return false;
+    const quad x = {l->x[0], l->x[1], l->x[2], NAN};
+    const double(*const box)[6] = (const double(*)[6])s->face_box;
+    quad least = quad_set(INFINITY);
+    quad_mask which = {0}, number = {0, 1, 2, 3};
+    for (int32_t q = 0; q < count; q += 4) {
+        const int32_t *four = face + q, rest[4] = {four[0], face[q + 1 < last ? q + 1 : last],
+                                                   face[q + 2 < last ? q + 2 : last], face[last]};
+        if (q + 4 > count) four = rest; // beyond the last there is the last
+        const quad square = quad_sums(ways_to(box[four[0]], x), ways_to(box[four[1]], x), ways_to(box[four[2]], x),
+                                      ways_to(box[four[3]], x));
+        const quad_mask less = square < least;
+        which = (number & less) | (which & ~less);
+        least = quad_select(less, square, least);
+        quad_store(&out->square[q], square);
+        number += 4;
+    }
+    int at = 0;
+    for (int i = 1; i < 4; i++) at = least[i] < least[at] ? i : at;
+    out->least = which[at] < last ? (int32_t)which[at] : last;
+    return s->face_body[face[out->least]] == l->touch[0];
+}
+
+// As find_nearest, of a particle that has one body near it: which facets may be as near as the nearest, and no others,
+// are looked at in the order of the cell, so that what is found is the same to the bit.
+static inline __attribute__((always_inline)) int find_nearest_of_one(const brunt_contact_surface *s,
+                                                                     const brunt_node_to_facet *f,
+                                                                     const search_query *l, bool membranes,
+                                                                     two_nearest *all, nearest *best) {
+    const int32_t *list = f->cells.face + f->cells.first[l->cell], other = l->touch[0];
+    const int32_t count = f->cells.first[l->cell + 1] - f->cells.first[l->cell], least = l->bounds->least;
+    const double range = f->bodies.range, range2 = range * range, clear = CLEAR * s->mean_edge;
+    const bool membrane = membranes && s->membrane.side[other].faces;
+    const brunt_closest first = brunt_closest_on_face(s, list[least], l->x);
+    const double reach = tie(s, first.square), root = reach < range ? reach : range, far2 = root * root * (1 + NEARLY);
+    const quad within = quad_set(far2 > clear * clear ? far2 : clear * clear);
+    *all = (two_nearest){-1, range2, range2, 0, range2};
+    best->body = other, best->count = 0, best->square = range2, best->root = range;
+    for (int32_t four = 0; four < count; four += 4)
+        for (unsigned near = quad_bits(quad_load(&l->bounds->square[four]) <= within); near; near &= near - 1) {
+            const int32_t q = four + __builtin_ctz(near);
+            int32_t face = q < count ? list[q] : list[least];
+            if (q >= count || s->face_body[face] != other) continue;
+            brunt_closest at = q == least ? first : brunt_closest_on_face(s, face, l->x);
+            if (at.square > range2) continue;
+            const bool behind = membrane && dot(at.normal, at.d) < 0;
+            add_nearest(all, &at, behind ? face + s->membrane.side[other].faces : face);
+            if (behind) turn_over(s, &face, &at);
+            if (!membrane || on_side(l, &at)) keep(s, best, &at, face);
+        }
+    return best->count > 0;
+}
+
 // The nearest facets among those listed of each body that is looked for. How many bodies. `membranes`: whether there
 // are any; the cells have their fronts, for both sides.
 static inline __attribute__((always_inline)) int find_nearest(const brunt_contact_surface *s,
@@ -137,10 +207,12 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
     if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = tie(s, guessed.square);
     int bodies = 0;
     if (all) *all = (two_nearest){-1, range2, range2, 0, range2};
-    for (int32_t q = 0; q < l->faces; q++) {
-        int32_t face = l->face[q];
-        if (q + AHEAD < l->faces) // the list is of facets that are anywhere
-            __builtin_prefetch(&s->face_body[l->face[q + AHEAD]]), __builtin_prefetch(s->face_box[l->face[q + AHEAD]]);
+    int32_t count;
+    const int32_t *list = facets_of(f, l, &count);
+    for (int32_t q = 0; q < count; q++) {
+        int32_t face = list[q];
+        if (q + AHEAD < count) // the list is of facets that are anywhere
+            __builtin_prefetch(&s->face_body[list[q + AHEAD]]), __builtin_prefetch(s->face_box[list[q + AHEAD]]);
         const int32_t other = s->face_body[face];
         if (other == l->body && !(membranes && l->patch_count)) continue;
         const bool membrane = membranes && s->membrane.side[other].faces;
@@ -195,36 +267,55 @@ static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_fa
     return false;
 }
 
+// Whether facets are all of the slope that is met, as their sides that face the place are: clearly, so that rounding
+// does not matter.
+static bool all_met(const brunt_contact_surface *s, const int32_t *face, int32_t count, const double x[3],
+                    const double n[3]) {
+    double least = INFINITY, height = INFINITY;
+    for (int32_t q = 0; q < count; q++) {
+        const double *normal = s->face_normal[face[q]], *centre = s->face_centre[face[q]];
+        const double to[3] = {x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]};
+        const double towards = dot(normal, to), along = dot(normal, n), cosine = towards < 0 ? -along : along;
+        height = fabs(towards) < height ? fabs(towards) : height;
+        least = cosine < least ? cosine : least;
+    }
+    return height > 1e-9 * s->mean_edge && least > SAME_SLOPE + 1e-9;
+}
+
+// Adds a facet of a membrane, when the place is right above it and what is met is another slope.
+static void add_slope(const brunt_contact_surface *s, double range, const search_query *l, int32_t face,
+                      candidate_list *out) {
+    const int32_t body = s->face_body[face];
+    if (!is_membrane(s, body) || !near_box(s->face_box[face], l->x, range)) return;
+    const double *normal = s->face_normal[face], *centre = s->face_centre[face];
+    double towards = 0;
+    for (int a = 0; a < 3; a++) towards += normal[a] * (l->normal ? -l->normal[a] : l->x[a] - centre[a]);
+    if (l->normal && fabs(towards) <= OPPOSED) return;
+    bool met = false, same = false;
+    for (int32_t k = 0; k < out->count; k++) {
+        if (out->candidate[k].body != body) continue;
+        met = true;
+        same = same || (towards < 0 ? -1 : 1) * dot(out->candidate[k].n, normal) > SAME_SLOPE;
+    }
+    if (!met || same || (body == l->body && in_patch(l, face)) || out->count == BRUNT_MAX_CANDIDATES) return;
+    brunt_closest at = brunt_closest_on_face(s, face, l->x);
+    if (towards < 0) turn_over(s, &face, &at);
+    if (!at.inside || at.square > range * range || !on_side(l, &at)) return;
+    facet_candidate *h = &out->candidate[out->count++];
+    *h = (facet_candidate){.face = face, .triangle = at.triangle, .body = body, .gap = dot(at.normal, at.d)};
+    memcpy(h->n, at.normal, sizeof h->n);
+}
+
 // Facets of membranes that the place is right above, beside the nearest one and on another slope: in a valley all of
 // them bear. Else what moves along one wall of a corner would be let through the other in the steps in which that is
 // the further one.
-static void add_slopes(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+static void add_slopes(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
                        candidate_list *out) {
-    const brunt_contact_surface *s = m->surface;
+    const int32_t begin = f->cells.first[l->cell], end = f->cells.first[l->cell + 1];
     bool any = false;
     for (int32_t k = 0; k < out->count; k++) any = any || is_membrane(s, out->candidate[k].body);
-    for (int32_t q = f->cells.first[l->cell]; any && q < f->cells.first[l->cell + 1]; q++) {
-        int32_t face = f->cells.face[q];
-        const int32_t body = s->face_body[face];
-        if (!is_membrane(s, body) || !near_box(s->face_box[face], l->x, f->bodies.range)) continue;
-        const double *normal = s->face_normal[face], *centre = s->face_centre[face];
-        double towards = 0;
-        for (int a = 0; a < 3; a++) towards += normal[a] * (l->normal ? -l->normal[a] : l->x[a] - centre[a]);
-        if (l->normal && fabs(towards) <= OPPOSED) continue;
-        bool met = false, same = false;
-        for (int32_t k = 0; k < out->count; k++) {
-            if (out->candidate[k].body != body) continue;
-            met = true;
-            same = same || (towards < 0 ? -1 : 1) * dot(out->candidate[k].n, normal) > SAME_SLOPE;
-        }
-        if (!met || same || (body == l->body && in_patch(l, face)) || out->count == BRUNT_MAX_CANDIDATES) continue;
-        brunt_closest at = brunt_closest_on_face(s, face, l->x);
-        if (towards < 0) turn_over(s, &face, &at);
-        if (!at.inside || at.square > f->bodies.range * f->bodies.range || !on_side(l, &at)) continue;
-        facet_candidate *h = &out->candidate[out->count++];
-        *h = (facet_candidate){.face = face, .triangle = at.triangle, .body = body, .gap = dot(at.normal, at.d)};
-        memcpy(h->n, at.normal, sizeof h->n);
-    }
+    if (!any || (l->bounds && all_met(s, f->cells.face + begin, end - begin, l->x, out->candidate[0].n))) return;
+    for (int32_t q = begin; q < end; q++) add_slope(s, f->bodies.range, l, f->cells.face[q], out);
 }
 
 static bool is_eroded(const brunt_contact_surface *s, int32_t body) {
@@ -277,11 +368,14 @@ static inline bool is_before(const brunt_contact_surface *s, const two_nearest *
 
 // Whether a place is clearly before the nearest facet of a body that is not the nearest of all. A membrane has no
 // inside.
-static bool is_outside(const brunt_contact_surface *s, const search_query *l, int32_t body) {
+static bool is_outside(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
+                       int32_t body) {
+    int32_t count;
+    const int32_t *list = facets_of(f, l, &count);
     two_nearest two = {-1, INFINITY, INFINITY, 0, INFINITY};
     if (is_membrane(s, body)) return false;
-    for (int32_t q = 0; q < l->faces; q++) {
-        const int32_t face = l->face[q];
+    for (int32_t q = 0; q < count; q++) {
+        const int32_t face = list[q];
         if (s->face_body[face] != body || !near_box(s->face_box[face], l->x, sqrt(two.first) + TOUCH * s->mean_edge))
             continue;
         const brunt_closest at = brunt_closest_on_face(s, face, l->x);
@@ -309,6 +403,16 @@ static inline int32_t list_unresolved(const search_query *l, const nearest *oppo
     return unresolved;
 }
 
+// How far the nearest facet is of all, 0 where the place may not be `before` it, and, where it is the one that is met
+// (`plain`: it may be), how far all others are.
+static inline void tell_distances(const brunt_contact_surface *s, const brunt_node_to_facet *f, const two_nearest *two,
+                                  bool before, bool plain, candidate_list *out) {
+    out->distance = before || two->face < 0 ? fmin(f->bodies.range, sqrt(two->first)) : 0;
+    out->second = 0;
+    if (plain && out->count == 1 && two->face == out->candidate[0].face && !s->renewal.eroded)
+        out->second = second_of(s, f, two, out->distance + MARGIN * s->mean_edge);
+}
+
 // What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is.
@@ -326,11 +430,12 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     if (membranes && guess >= 0 && !l->particle && is_membrane(s, s->face_body[guess]))
         guess = -1; // it may be on the other side now
     const facet_search opposed_to_it = {l->normal, OPPOSED, l->touch, l->touches, guess, margin, &two};
-    const int bodies = find_nearest(s, f, l, opposed_to_it, membranes, opposed);
+    const int bodies = l->bounds ? find_nearest_of_one(s, f, l, membranes, &two, opposed)
+                                 : find_nearest(s, f, l, opposed_to_it, membranes, opposed);
     int32_t entered[BRUNT_MAX_NEAR];
     const int32_t unresolved = list_unresolved(l, opposed, bodies, close * close, entered);
     out->reach = INFINITY;
-    if (unresolved && l->among) return; // it leaves through whatever facet is nearest, however far
+    if (unresolved && l->beside) return; // it leaves through whatever facet is nearest, however far
     int all = unresolved
                   ? find_nearest(s, f, l, (facet_search){.list = entered, .count = unresolved, .guess = -1}, false, any)
                   : 0;
@@ -350,7 +455,7 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     for (int b = 0; b < bodies && out->count < BRUNT_MAX_CANDIDATES; b++) {
         facet_candidate *h = &out->candidate[out->count];
         if (!opposed[b].count || !brunt_nearest_opposed(s, &opposed[b], l->normal, h)) continue;
-        if (h->gap < 0 && two.face >= 0 && (h->body == s->face_body[two.face] ? outside : is_outside(s, l, h->body)))
+        if (h->gap < 0 && two.face >= 0 && (h->body == s->face_body[two.face] ? outside : is_outside(s, f, l, h->body)))
             continue;
         if (membranes && h->gap < 0 && l->normal && (by_membrane || l->membrane) && !is_membrane(s, h->body) &&
             other_way_out(m, f, l, h->body, opposed[b].square))
@@ -359,15 +464,20 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
         out->count++;
         if (!is_eroded(s, h->body)) brunt_nearest_valley(s, &opposed[b], l->normal, out);
     }
-    if (membranes) add_slopes(m, f, l, out);
+    if (membranes) add_slopes(s, f, l, out);
     if (s->renewal.eroded) add_eroded(m, f, l, out);
     // Nothing further away than this changed what was found.
     out->reach = fmax(sqrt(two.first) + margin, bodies == 1 && opposed[0].count ? opposed[0].root : f->bodies.range);
-    out->distance = outside || two.face < 0 || (by_membrane && !inside) ? fmin(f->bodies.range, sqrt(two.first)) : 0;
-    out->second = 0;
-    if (plain && out->count == 1 && two.face == out->candidate[0].face && !s->renewal.eroded)
-        out->second = second_of(s, f, &two, out->distance + margin);
+    if (!l->particle) tell_distances(s, f, &two, outside || (by_membrane && !inside), plain, out);
     if (membranes) thicken(s, l->half, out);
+}
+
+void brunt_candidates_find_of_particle(const brunt_contact_context *m, const brunt_node_to_facet *f, search_query *l,
+                                       candidate_list *out) {
+    facet_bounds bounds;
+    l->bounds = bound_distances(m->surface, f, l, &bounds) ? &bounds : NULL;
+    brunt_candidates_find(m, f, l, -1, out);
+    l->bounds = NULL;
 }
 
 void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
@@ -383,16 +493,17 @@ void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_f
 void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_facet *f, const search_query *l,
                                int32_t n) {
     const brunt_contact_surface *s = m->surface;
-    int32_t *list = f->cache.beside[n], count = 0;
+    int32_t *beside = f->cache.beside[n], count = 0, all;
+    const int32_t *list = facets_of(f, l, &all);
     f->cache.node[n].beyond = 0;
     if (l->touches != 1 || s->membrane.side || s->renewal.eroded) return;
     const double beyond = fmin(f->cells.range, s->motion.seen) * (1 - 1e-8);
-    for (int32_t q = 0; q < l->faces; q++) {
-        if (s->face_body[l->face[q]] != l->touch[0] || !near_box(s->face_box[l->face[q]], l->x, beyond)) continue;
+    for (int32_t q = 0; q < all; q++) {
+        if (s->face_body[list[q]] != l->touch[0] || !near_box(s->face_box[list[q]], l->x, beyond)) continue;
         if (count == BRUNT_BESIDE) return;
-        list[count++] = l->face[q];
+        beside[count++] = list[q];
     }
-    if (count < BRUNT_BESIDE) list[count] = -1;
+    if (count < BRUNT_BESIDE) beside[count] = -1;
     if (count > 0) f->cache.node[n].beyond = beyond;
 }
 
@@ -409,9 +520,9 @@ static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_f
     const double root = tie(s, at->square);
     if (at->square > fmin(close * close, range * range)) return false;
     two_nearest two = {face, at->square, range * range, dot(at->normal, at->d), at->square};
-    for (int32_t q = 0; q < l->faces; q++) {
-        if (l->face[q] == face || !near_box(s->face_box[l->face[q]], l->x, root + margin)) continue;
-        const double square = brunt_closest_on_face_within(s, l->face[q], l->x, 0).square;
+    for (int32_t q = 0; q < l->besides; q++) {
+        if (l->beside[q] == face || !near_box(s->face_box[l->beside[q]], l->x, root + margin)) continue;
+        const double square = brunt_closest_on_face_within(s, l->beside[q], l->x, 0).square;
         if (!(square > root * root)) return false;
         two.second = fmin(two.second, square);
     }
@@ -432,8 +543,8 @@ bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_
     const double beyond = f->cache.node[n].beyond;
     if (!(beyond > 0) || l->touches != 1 || s->face_body[f->cache.beside[n][0]] != l->touch[0]) return false;
     search_query among = *l;
-    among.face = f->cache.beside[n], among.faces = 0, among.among = true;
-    while (among.faces < BRUNT_BESIDE && among.face[among.faces] >= 0) among.faces++;
+    among.beside = f->cache.beside[n], among.besides = 0;
+    while (among.besides < BRUNT_BESIDE && among.beside[among.besides] >= 0) among.besides++;
     if (!find_one_among(s, f, &among, f->cache.nearest[n], out))
         find_candidates(m, f, &among, f->cache.nearest[n], false, out);
     return out->reach < beyond;

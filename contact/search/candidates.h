@@ -11,6 +11,7 @@ typedef struct facet_candidate {
     int32_t face, triangle, body;
     brunt_feature feature;
     bool valley; // another slope of it is as near
+    bool inside; // the nearest point is no edge and no corner of the facet
     double gap, n[3], target;
     int32_t worker, master; // of a feature that is met: the worker that looked, and which of its masters
 } facet_candidate;
@@ -22,15 +23,22 @@ typedef struct candidate_list {
     double reach;            // [m] what is further away than this has no part in it
 } candidate_list;
 
+// Least distances from a place to the facets of its cell, as their boxes tell.
+enum { BRUNT_BOUNDED = 64 };
+typedef struct facet_bounds {
+    double square[BRUNT_BOUNDED]; // [m^2]
+    int32_t least;                // which facet of the cell has the least
+} facet_bounds;
+
 // A place that looks around: which bodies it may touch (their boxes are that near), and which it may have entered.
 typedef struct search_query {
     int32_t box, body;
     const double *x, *normal; // outward; NULL when it has none
     bool particle; // nothing is remembered of what it sees: how far all but the nearest facet are is not asked for
+    const facet_bounds *bounds; // of a particle that has one body near it; NULL: each facet is looked at by itself
     int64_t cell;
-    const int32_t *face; // to look through: those in the cell ...
-    int32_t faces;
-    bool among; // ... or those listed when it last looked there
+    const int32_t *beside; // facets to look through in place of those in its cell, so many; NULL: those
+    int32_t besides;
     int32_t touch[BRUNT_MAX_NEAR], touches, enter[BRUNT_MAX_NEAR], enters;
     // Where there are membranes: half its own thickness, how far behind one it may be found, and the elements of its
     // own body that are no obstacle; without those the body does not meet itself.

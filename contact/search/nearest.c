@@ -58,8 +58,11 @@ static const tied *take_nearest(const brunt_contact_surface *s, const nearest *b
                                 double way[3]) {
     const tied *chosen = most_opposed(best);
     const brunt_closest *at = &chosen->at;
-    *out = (facet_candidate){
-        .face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
+    *out = (facet_candidate){.face = chosen->face,
+                             .triangle = at->triangle,
+                             .body = best->body,
+                             .inside = at->inside,
+                             .gap = dot(at->normal, at->d)};
     memcpy(out->n, at->normal, sizeof out->n);
     memcpy(way, at->d, sizeof at->d);
     if (is_membrane(s, best->body)) return chosen; // faces of a crumpled membrane have no turn in common at a node

@@ -103,7 +103,7 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
             .box = f->bodies.box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
         if (s->membrane.side) look_at_membranes(s, n, &l);
         cached->since = 0, cached->distance = far, cached->second = 0;
-        if (!brunt_candidates_bodies(f, &l)) {
+        if (!brunt_candidates_bodies(f, &l) || (l.cell = brunt_candidates_cell(f, l.x)) < 0) {
             if (l.touches) cached->distance = 0; // near, but outside the cells
             return;
         }

@@ -49,8 +49,10 @@ int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *
 bool brunt_broad_phase_in_range(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
                                 double by);
 // --- candidates.c
-// Fills the bodies a query may touch or have entered; whether there are facets to look at.
+// Fills the bodies a query may touch or have entered. Whether there are any.
 bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l);
+// The cell of a place, whose facets it is to look at; BRUNT_NONE: none is near.
+int64_t brunt_candidates_cell(const brunt_node_to_facet *f, const double x[3]);
 void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
                            int32_t guess, candidate_list *out);
 // Lists the facets about node n, whose query looked through its cell; and what it meets among them: false where that
@@ -59,6 +61,9 @@ void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_fac
                                int32_t n);
 bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
                             int32_t n, candidate_list *out);
+// The same of a particle, for which l->bounds are made.
+void brunt_candidates_find_of_particle(const brunt_contact_context *m, const brunt_node_to_facet *f, search_query *l,
+                                       candidate_list *out);
 // A facet on the front of a membrane in place of that on its back; any other as it is: what cells list.
 int32_t brunt_candidates_front(const brunt_contact_surface *s, int32_t face);
 bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,

@@ -5,17 +5,19 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "contact/distance/quad.h"
 #include "contact/planes/boundary.h"
 #include "grid/bspline.h"
 #include "mpm/particles.h"
 
 enum { IMAGE_LAYERS = 2 };
 
-// A node under the particles of a block, which may be in the next one along an axis.
-static real *block_node(const brunt_grid *grid, const brunt_block *block, const int32_t at[3]) {
+// A node under the particles of a block by its place from the block's first one, which may be in the next one along an
+// axis.
+static real *block_node(const brunt_grid *grid, const brunt_block *block, const int at[3]) {
     int corner = 0, in[3] = {0};
     for (int a = 0; a < grid->dim; a++) {
-        const int local = at[a] - block->coord[a] * grid->side, past = local >= grid->side;
+        const int local = at[a], past = local >= grid->side;
         corner = 2 * corner + past, in[a] = local - past * grid->side;
     }
     return brunt_slot_nodes(grid, block->slot[corner]) +
@@ -44,8 +46,9 @@ void brunt_particle_nodes_find(const brunt_body *body, int32_t b, int64_t s, con
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++)
             for (int l = 0; l < (dim == 3 ? n : 1); l++) {
+                const int in[3] = {local[0] + i, local[1] + k, local[2] + l};
                 const int32_t at[3] = {base[0] + i, base[1] + k, base[2] + l};
-                real *found = block_node(grid, block, at);
+                real *found = block_node(grid, block, in);
                 if (!(found[BRUNT_NODE_MASS] > 0)) continue;
                 memcpy(out->at[out->count], at, sizeof at);
                 out->node[out->count] = found;
@@ -96,28 +99,65 @@ static kernel_axis axis_of(const brunt_body *body, const brunt_block *block, int
     return axis;
 }
 
-// Nodes in the order of brunt_particle_nodes_find, so that the sum has the same bits.
+// Three reals of a node and what is behind them.
+BRUNT_INLINE quad three_of(const real *node) {
+    return (quad){(double)node[0], (double)node[1], (double)node[2], (double)node[3]};
+}
+
+// Nodes in the order of brunt_particle_nodes_find, so that the sum has the same bits; `n`: nodes along an axis.
+BRUNT_INLINE quad sum_velocity(const brunt_grid *grid, const brunt_block *block, const kernel_axis axis[3], int n,
+                               bool solid, int which) {
+    quad sum = {0};
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++) {
+            const int side = 2 * axis[0].past[i] + axis[1].past[k];
+            const int32_t *slot = block->slot + (solid ? 2 * side : side);
+            const double across = axis[0].weight[i] * axis[1].weight[k];
+            for (int l = 0; l < (solid ? n : 1); l++) {
+                const int index = brunt_node_index(grid, axis[0].local[i], axis[1].local[k], axis[2].local[l]);
+                const real *node = brunt_slot_nodes(grid, slot[axis[2].past[l]]) + (size_t)index * BRUNT_NODE_REALS;
+                if (!(node[BRUNT_NODE_MASS] > 0)) continue;
+                sum += quad_set(across * axis[2].weight[l]) * three_of(node + which);
+            }
+        }
+    return sum;
+}
+
 void brunt_particle_velocity(const brunt_body *body, int32_t b, int64_t s, int which, double v[3]) {
     const brunt_grid *grid = &body->grid;
     const brunt_block *block = &grid->blocks[b];
-    const int n = grid->order + 1, deep = grid->dim == 3 ? n : 1;
     kernel_axis axis[3] = {[2] = {.weight = {1}}};
-    double sum[3] = {0, 0, 0};
     int local[3];
     brunt_node_local(grid, body->particles.bin[s], local);
     for (int a = 0; a < grid->dim; a++) axis[a] = axis_of(body, block, s, a, local[a]);
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < n; k++)
-            for (int l = 0; l < deep; l++) {
-                const int side = 2 * axis[0].past[i] + axis[1].past[k];
-                const int32_t slot = block->slot[grid->dim == 3 ? 2 * side + axis[2].past[l] : side];
-                const int index = brunt_node_index(grid, axis[0].local[i], axis[1].local[k], axis[2].local[l]);
-                const real *node = brunt_slot_nodes(grid, slot) + (size_t)index * BRUNT_NODE_REALS;
-                const double weight = axis[0].weight[i] * axis[1].weight[k] * axis[2].weight[l];
-                if (!(node[BRUNT_NODE_MASS] > 0)) continue;
-                for (int a = 0; a < 3; a++) sum[a] += weight * (double)node[which + a];
-            }
+    const quad sum = grid->dim == 3 && grid->order == 2 ? sum_velocity(grid, block, axis, 3, true, which)
+                     : grid->dim == 3                   ? sum_velocity(grid, block, axis, grid->order + 1, true, which)
+                                      : sum_velocity(grid, block, axis, grid->order + 1, false, which);
     for (int a = 0; a < 3; a++) v[a] = a < grid->dim ? sum[a] : 0;
+}
+
+void brunt_particle_velocity_bounds(const brunt_body *body, const brunt_node_range *of, int which, double low[3],
+                                    double high[3]) {
+    const brunt_grid *grid = &body->grid;
+    const brunt_block *block = &grid->blocks[of->block];
+    const int last = grid->dim - 1;
+    const int end[3] = {of->end[0] + grid->order, last == 2 ? of->end[1] + grid->order : 1,
+                        of->end[last] + grid->order};
+    quad least = {0}, most = {0}; // of nodes without mass, which are left out
+    for (int x = of->from[0]; x < end[0]; x++)
+        for (int y = last == 2 ? of->from[1] : 0; y < end[1]; y++)
+            for (int z = of->from[last], part; z < end[2]; z += part) { // as far as they lie together
+                const int at[3] = {x, last == 2 ? y : z, last == 2 ? z : 0};
+                const int before = z < grid->side && end[2] > grid->side ? grid->side : end[2];
+                const real *node = block_node(grid, block, at);
+                part = before - z;
+                for (int i = 0; i < part; i++, node += BRUNT_NODE_REALS) {
+                    if (!(node[BRUNT_NODE_MASS] > 0)) continue;
+                    const quad v = three_of(node + which);
+                    least = quad_min(v, least), most = quad_max(v, most);
+                }
+            }
+    for (int a = 0; a < 3; a++) low[a] = a < grid->dim ? least[a] : 0, high[a] = a < grid->dim ? most[a] : 0;
 }
 
 // ------------------------------------------------------------------------------------------ degrees of freedom

@@ -38,6 +38,13 @@ void brunt_particle_nodes_velocity(const brunt_particle_nodes *under, int dim, i
 
 // The same velocity of a particle, for which its nodes need not be listed.
 void brunt_particle_velocity(const brunt_body *body, int32_t b, int64_t s, int which, double v[3]);
+// Bounds of its components, but for rounding, of any particle in the bins from..end along each axis of a block [m/s].
+typedef struct brunt_node_range {
+    int32_t block;
+    const int32_t *from, *end;
+} brunt_node_range;
+void brunt_particle_velocity_bounds(const brunt_body *body, const brunt_node_range *of, int which, double low[3],
+                                    double high[3]);
 
 // A grid node by its degree-of-freedom node.
 typedef struct brunt_grid_dof {
