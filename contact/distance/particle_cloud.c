@@ -13,13 +13,17 @@
 int brunt_cloud_reserve(brunt_cloud *cloud, int count, brunt_error *error) {
     cloud->stride = ((size_t)count / BRUNT_SPARE + 2) * BRUNT_SPARE;
     cloud->count = cloud->runs = 0, cloud->flat = false;
-    return BRUNT_CAPACITY_IN(cloud->data, cloud->bytes, BRUNT_ROWS * cloud->stride, 0,
-                             "numbers of particles about a place", error);
+    if (BRUNT_CAPACITY_IN(cloud->data, cloud->bytes, BRUNT_ROWS * cloud->stride, 0,
+                          "numbers of particles about a place", error))
+        return BRUNT_FAILED;
+    cloud->b = cloud->data + BRUNT_ROW_B * cloud->stride, cloud->b_stride = cloud->stride;
+    return BRUNT_OK;
 }
 
 void brunt_cloud_point(brunt_cloud *cloud, const double x[3]) {
     double *to = cloud->data + cloud->count++;
     for (int r = 0; r < BRUNT_ROWS; r++) to[(size_t)r * cloud->stride] = r < 3 ? x[r] : 0;
+    cloud->runs = 1, cloud->run[0] = (brunt_run){0, 0}, cloud->run[1].from = cloud->count; // its own
 }
 
 int brunt_cloud_source(const brunt_cloud *cloud, int i) {
@@ -101,37 +105,31 @@ typedef struct farthest {
     doubles_mask where;
 } farthest;
 
-// Looks at the particles from i on: x . n, plus sqrt(n . B n) where their reach counts.
-BRUNT_INLINE void look_from(const brunt_cloud *cloud, int64_t i, bool reach, const double n[3], const double nn[6],
-                            farthest *of) {
+// Looks at the particles from number i of the cloud on, of which `left` are together: x . n, plus sqrt(n . B n) where
+// there is B (else NULL), their reach.
+BRUNT_INLINE void look_from(const brunt_cloud *cloud, int64_t i, int64_t left, const double *b, const double n[3],
+                            const double nn[6], farthest *of) {
     const size_t stride = cloud->stride;
-    const double *x = cloud->data + i, *b = x + BRUNT_ROW_B * stride;
+    const double *x = cloud->data + i;
     doubles along = doubles_load(x) * n[0] + doubles_load(x + stride) * n[1] + doubles_load(x + 2 * stride) * n[2];
-    if (reach) {
+    if (b) {
         doubles square = {0};
-        for (int r = 0; r < 6; r++) square += nn[r] * doubles_load(b + (size_t)r * stride);
+        for (int r = 0; r < 6; r++) square += nn[r] * doubles_load(b + (size_t)r * cloud->b_stride);
         along += doubles_sqrt(doubles_max(square, (doubles){0}));
     }
-    const doubles_mask lane = doubles_lane(), more = (along > of->most) & (lane < cloud->count - i);
+    const doubles_mask lane = doubles_lane(), more = (along > of->most) & (lane < left);
     of->where = doubles_mask_select(more, lane + i, of->where);
     of->most = doubles_select(more, along, of->most);
 }
 
-// The first that goes farthest; two registers in turn, neither of which waits for the other.
-BRUNT_INLINE double find_farthest(const brunt_cloud *cloud, bool reach, const double n[3], int *which) {
-    const double nn[6] = {n[0] * n[0], n[1] * n[1], n[2] * n[2], 2 * n[1] * n[2], 2 * n[0] * n[2], 2 * n[0] * n[1]};
-    const doubles none = doubles_set(-INFINITY);
-    farthest one = {none, doubles_set_mask(INT32_MAX)}, two = one;
-    for (int64_t i = 0; i < cloud->count; i += 2 * BRUNT_DOUBLES) {
-        look_from(cloud, i, reach, n, nn, &one);
-        look_from(cloud, i + BRUNT_DOUBLES, reach, n, nn, &two);
-    }
-    const doubles most = doubles_max(one.most, two.most);
+// The first of those that one and two have found that goes farthest.
+BRUNT_INLINE double farther(const farthest *one, const farthest *two, int *which) {
+    const doubles most = doubles_max(one->most, two->most);
     double greatest = -INFINITY;
     for (int l = 0; l < BRUNT_DOUBLES; l++) greatest = most[l] > greatest ? most[l] : greatest;
     const doubles_mask far = doubles_set_mask(INT32_MAX),
-                       first = doubles_mask_select(one.most == greatest, one.where, far),
-                       second = doubles_mask_select(two.most == greatest, two.where, far),
+                       first = doubles_mask_select(one->most == greatest, one->where, far),
+                       second = doubles_mask_select(two->most == greatest, two->where, far),
                        least = doubles_mask_select(first < second, first, second);
     int64_t at = INT32_MAX;
     for (int l = 0; l < BRUNT_DOUBLES; l++) at = least[l] < at ? least[l] : at;
@@ -139,15 +137,31 @@ BRUNT_INLINE double find_farthest(const brunt_cloud *cloud, bool reach, const do
     return greatest;
 }
 
+// Two registers in turn, neither of which waits for the other.
 double brunt_cloud_extent(const brunt_cloud *cloud, bool reach, const double n[3], int *which) {
-    return reach ? find_farthest(cloud, true, n, which) : find_farthest(cloud, false, n, which);
+    const double nn[6] = {n[0] * n[0], n[1] * n[1], n[2] * n[2], 2 * n[1] * n[2], 2 * n[0] * n[2], 2 * n[0] * n[1]};
+    farthest one = {doubles_set(-INFINITY), doubles_set_mask(INT32_MAX)}, two = one;
+    for (int64_t i = 0; i < cloud->count && !reach; i += 2 * BRUNT_DOUBLES) {
+        look_from(cloud, i, cloud->count - i, NULL, n, nn, &one);
+        look_from(cloud, i + BRUNT_DOUBLES, cloud->count - i - BRUNT_DOUBLES, NULL, n, nn, &two);
+    }
+    for (int q = 0; q < cloud->runs && reach; q++) {
+        const double *b = cloud->b + cloud->run[q].first;
+        const int64_t end = cloud->run[q + 1].from;
+        for (int64_t i = cloud->run[q].from; i < end; i += 2 * BRUNT_DOUBLES, b += 2 * BRUNT_DOUBLES) {
+            look_from(cloud, i, end - i, b, n, nn, &one);
+            if (i + BRUNT_DOUBLES < end)
+                look_from(cloud, i + BRUNT_DOUBLES, end - i - BRUNT_DOUBLES, b + BRUNT_DOUBLES, n, nn, &two);
+        }
+    }
+    return farther(&one, &two, which);
 }
 
 void brunt_cloud_end(const brunt_cloud *cloud, int i, bool reach, const double n[3], double end[3]) {
-    const size_t stride = cloud->stride;
-    const double *of = cloud->data + i, *b = of + BRUNT_ROW_B * stride;
-    for (int a = 0; a < 3; a++) end[a] = of[(size_t)a * stride];
+    const size_t stride = cloud->b_stride;
+    for (int a = 0; a < 3; a++) end[a] = cloud->data[(size_t)a * cloud->stride + (size_t)i];
     if (!reach) return;
+    const double *b = cloud->b + brunt_cloud_source(cloud, i);
     const double Bn[3] = {b[0] * n[0] + b[5 * stride] * n[1] + b[4 * stride] * n[2],
                           b[5 * stride] * n[0] + b[stride] * n[1] + b[3 * stride] * n[2],
                           b[4 * stride] * n[0] + b[3 * stride] * n[1] + b[2 * stride] * n[2]};
@@ -175,25 +189,34 @@ static double least_of(doubles a) {
 
 double brunt_cloud_ball(const brunt_cloud *cloud) {
     doubles least = doubles_set(INFINITY);
-    for (int64_t i = 0; i < cloud->count; i += BRUNT_DOUBLES) {
-        doubles b[6];
-        for (int r = 0; r < 6; r++) b[r] = doubles_load(cloud->data + (size_t)(BRUNT_ROW_B + r) * cloud->stride + i);
-        const doubles ball = ball_of(b, cloud->flat);
-        least = doubles_select((ball < least) & (doubles_lane() < cloud->count - i), ball, least);
+    for (int q = 0; q < cloud->runs; q++) {
+        const double *row = cloud->b + cloud->run[q].first;
+        const int64_t count = cloud->run[q + 1].from - cloud->run[q].from;
+        for (int64_t i = 0; i < count; i += BRUNT_DOUBLES) {
+            doubles b[6];
+            for (int r = 0; r < 6; r++) b[r] = doubles_load(row + (size_t)r * cloud->b_stride + i);
+            const doubles ball = ball_of(b, cloud->flat);
+            least = doubles_select((ball < least) & (doubles_lane() < count - i), ball, least);
+        }
     }
     return least_of(least);
 }
 
+// The same of one particle.
+static double ball_of_one(const double *of, size_t stride, bool flat) {
+    const double share = flat ? 0.5 : 1.0 / 3, yz = of[3 * stride], xz = of[4 * stride], xy = of[5 * stride];
+    const double mean = share * (of[0] + of[stride] + of[2 * stride]), xx = of[0] - mean, yy = of[stride] - mean,
+                 zz = flat ? 0 : of[2 * stride] - mean,
+                 square = xx * xx + yy * yy + zz * zz + 2 * (yz * yz + xz * xz + xy * xy),
+                 by = sqrt((1 - share) * square), low = mean - by;
+    return low > 0 ? low / sqrt(mean + by) : 0;
+}
+
 double brunt_cloud_ball_of(const brunt_cloud *cloud, const int *some, int count) {
     double least = INFINITY;
-    for (int k = 0; k < count; k += BRUNT_DOUBLES) {
-        doubles b[6];
-        for (int r = 0; r < 6; r++) {
-            const double *row = cloud->data + (size_t)(BRUNT_ROW_B + r) * cloud->stride;
-            b[r] = doubles_set(row[some[k]]);
-            for (int l = 1; l < BRUNT_DOUBLES && k + l < count; l++) b[r][l] = row[some[k + l]];
-        }
-        least = fmin(least, least_of(ball_of(b, cloud->flat)));
+    for (int k = 0; k < count; k++) {
+        const double ball = ball_of_one(cloud->b + brunt_cloud_source(cloud, some[k]), cloud->b_stride, cloud->flat);
+        least = ball < least ? ball : least;
     }
     return least;
 }

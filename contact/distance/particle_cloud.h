@@ -10,7 +10,8 @@ enum {
     BRUNT_CLOUD_RUNS = 17 // and one that ends the last
 };
 
-// Particles that lie together where a cloud's come from: from number `from` on in the cloud, `first` there.
+// Particles that lie together where a cloud's come from: from number `from` on in the cloud, `first` there, which is
+// where their B stays.
 typedef struct brunt_run {
     int32_t first, from;
 } brunt_run;
@@ -18,6 +19,8 @@ typedef struct brunt_run {
 typedef struct brunt_cloud {
     double *data;         // rows of `stride` numbers; places are relative to where the cloud is looked at from
     size_t stride, bytes; // [-], [bytes]
+    const double *b;      // the six rows of B, of `b_stride` numbers, by the numbers where the cloud is from
+    size_t b_stride;
     int count, runs;
     brunt_run run[BRUNT_CLOUD_RUNS];
     bool flat; // in two dimensions

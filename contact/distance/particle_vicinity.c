@@ -16,18 +16,15 @@ void brunt_vicinity_free(brunt_vicinity *vicinity) { brunt_free(vicinity->data);
 
 // Where the bins from `at` on along the last axis begin, as far as they are of one block: the bin's number of its first
 // particle and of those behind it, from the block's first on, which is particle `*first` of the body. NULL: no block.
-static const int32_t *find_bins(const brunt_vicinity *v, const int at[3], int64_t *first) {
+static inline const int32_t *find_bins(const brunt_vicinity *v, const int at[3], int64_t *first) {
     const brunt_grid *grid = &v->body->grid;
-    int local[3] = {0}, corner = 0;
-    for (int a = 0; a < grid->dim; a++) {
-        local[a] = at[a] - grid->order; // bins are counted from `order` before the slot
-        corner = 2 * corner + (local[a] < 0);
-        if (local[a] < 0) local[a] += grid->side;
-    }
-    const int32_t b = grid->slots[v->slot].source[corner];
+    const int x = at[0] - grid->order, y = at[1] - grid->order, z = at[2] - grid->order, side = grid->side;
+    const int plane = 2 * (x < 0) + (y < 0), solid = grid->dim == 3; // bins are counted from `order` before the slot
+    const int32_t b = grid->slots[v->slot].source[solid ? 2 * plane + (z < 0) : plane];
     if (b < 0) return NULL;
     *first = grid->blocks[b].first;
-    return grid->bin_start + (int64_t)b * BRUNT_BIN_STARTS + brunt_node_index(grid, local[0], local[1], local[2]);
+    return grid->bin_start + (int64_t)b * BRUNT_BIN_STARTS +
+           brunt_node_index(grid, x + (x < 0) * side, y + (y < 0) * side, solid ? z + (z < 0) * side : 0);
 }
 
 // The particles of the bins from..to of a column, as far as they are of one block: `part` 0 is of the block before the
@@ -43,21 +40,22 @@ static int find_particles(const brunt_vicinity *v, const int column[3], int part
     return bins ? bins[to - from] - bins[0] : 0;
 }
 
-// How many particles the bins before each of a column have, from `*start` on.
+// How many particles the bins before each of a column that is asked for have, from `*start` on; at its end: all.
 static void count_column(brunt_vicinity *v, const int column[3], int32_t *start) {
     const brunt_grid *grid = &v->body->grid;
-    const int last = grid->dim - 1;
-    const int32_t *bins = NULL;
-    int64_t first;
-    int from = 0;
-    for (int k = 0; k < grid->span; k++) {
-        if (k == 0 || k == grid->order) {
-            int at[3] = {column[0], column[1], column[2]};
-            at[last] = from = k;
-            bins = find_bins(v, at, &first);
-        }
-        start[k + 1] = start[k] + (bins && k >= v->from && k < v->to ? bins[k + 1 - from] - bins[k - from] : 0);
+    const int last = grid->dim - 1, middle = grid->order < v->from ? v->from
+                                             : grid->order < v->to ? grid->order
+                                                                   : v->to;
+    int at[3] = {column[0], column[1], column[2]};
+    start[v->from] = start[0];
+    for (int part = 0; part < 2; part++) {
+        const int from = part ? middle : v->from, to = part ? v->to : middle;
+        int64_t first;
+        at[last] = from;
+        const int32_t *bins = from < to ? find_bins(v, at, &first) : NULL;
+        for (int k = from; k < to; k++) start[k + 1] = start[k] + (bins ? bins[k + 1 - from] - bins[k - from] : 0);
     }
+    start[grid->span] = start[v->to];
 }
 
 int brunt_vicinity_turn(brunt_vicinity *v, brunt_body *body, int32_t slot, const int nodes[2], brunt_error *error) {
@@ -153,12 +151,18 @@ static void make_column(brunt_vicinity *v, const int column[3], int32_t start) {
     }
 }
 
-// Copies rows, and what comes behind them up to whole registers.
-static void copy_run(const double *from, size_t stride, int count, const double at[3], double *to, size_t to_stride) {
-    for (int r = 0; r < BRUNT_ROWS; r++, from += stride, to += to_stride) {
-        const doubles shift = doubles_set(r < 3 ? at[r] : 0);
-        for (int i = 0; i < count; i += BRUNT_DOUBLES) doubles_store(to + i, doubles_load(from + i) - shift);
-    }
+// Copies a row, and what comes behind it up to whole registers, less `at`.
+BRUNT_INLINE void copy_row(const double *from, int count, double at, double *to) {
+    for (int i = 0; i < count; i += BRUNT_DOUBLES) doubles_store(to + i, doubles_load(from + i) - at);
+}
+
+// Places and volumes of a run; B stays where it is.
+static void copy_run(const brunt_vicinity *v, const brunt_run run[2], const double at[3], brunt_cloud *cloud) {
+    const int count = run[1].from - run[0].from;
+    const double *from = v->data + run[0].first;
+    double *to = cloud->data + run[0].from;
+    for (size_t r = 0; r < 3; r++) copy_row(from + r * v->stride, count, at[r], to + r * cloud->stride);
+    copy_row(from + BRUNT_ROW_VOLUME * v->stride, count, 0, to + BRUNT_ROW_VOLUME * cloud->stride);
 }
 
 int brunt_vicinity_look(brunt_vicinity *v, int node, brunt_cloud *cloud, brunt_error *error) {
@@ -184,9 +188,8 @@ int brunt_vicinity_look(brunt_vicinity *v, int node, brunt_cloud *cloud, brunt_e
     if (brunt_cloud_reserve(cloud, count, error)) return BRUNT_FAILED;
     memcpy(cloud->run, run, sizeof run);
     cloud->runs = runs, cloud->count = count, cloud->flat = grid->dim < 3;
-    for (int q = 0; q < runs; q++)
-        copy_run(v->data + run[q].first, v->stride, run[q + 1].from - run[q].from, at, cloud->data + run[q].from,
-                 cloud->stride);
+    cloud->b = v->data + BRUNT_ROW_B * v->stride, cloud->b_stride = v->stride;
+    for (int q = 0; q < runs; q++) copy_run(v, &run[q], at, cloud);
     // A register of particles without volume behind the last.
     for (int r = 0; r < 3; r++) doubles_store(cloud->data + (size_t)r * cloud->stride + count, (doubles){0});
     doubles_store(cloud->data + BRUNT_ROW_VOLUME * cloud->stride + count, (doubles){0});

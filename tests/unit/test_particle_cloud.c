@@ -71,6 +71,16 @@ static double least_weight(brunt_body *body, form is, int64_t s, const double at
 }
 
 // What a node of a slot sees, of a vicinity for it alone.
+// Keeps B, which stays where it is from, with the cloud.
+static void keep_own(brunt_cloud *cloud) {
+    double *own = cloud->data + BRUNT_ROW_B * cloud->stride;
+    for (int i = 0; i < cloud->count; i++)
+        for (size_t r = 0; r < 6; r++)
+            own[r * cloud->stride + (size_t)i] = cloud->b[r * cloud->b_stride + (size_t)brunt_cloud_source(cloud, i)];
+    cloud->b = own, cloud->b_stride = cloud->stride, cloud->runs = cloud->count > 0;
+    cloud->run[0] = (brunt_run){0, 0}, cloud->run[1].from = cloud->count;
+}
+
 static void look(brunt_body *body, int32_t slot, int node, brunt_cloud *cloud) {
     brunt_vicinity vicinity = {.body = NULL};
     int local[3];
@@ -78,6 +88,7 @@ static void look(brunt_body *body, int32_t slot, int node, brunt_cloud *cloud) {
     const int nodes[2] = {local[body->grid.dim - 1], local[body->grid.dim - 1]};
     ck_assert_int_eq(brunt_vicinity_turn(&vicinity, body, slot, nodes, NULL), BRUNT_OK);
     ck_assert_int_eq(brunt_vicinity_look(&vicinity, node, cloud, NULL), BRUNT_OK);
+    keep_own(cloud);
     brunt_vicinity_free(&vicinity);
 }
 
@@ -140,6 +151,29 @@ static void check_extents(brunt_body *body, const brunt_cloud *cloud, int32_t sl
     }
 }
 
+static void draw_direction(int dim, uint64_t *state, double n[3]) {
+    double length = 0;
+    for (int a = 0; a < 3; a++) n[a] = a < dim ? draw_between(state, -1, 1) : 0, length += n[a] * n[a];
+    for (int a = 0; a < 3; a++) n[a] /= sqrt(length);
+}
+
+// A cloud whose B stays in its vicinity has the ends of one that keeps its own, to the bit; balls to rounding of the
+// same arithmetic.
+static void check_ends(const brunt_cloud *cloud, const brunt_cloud *own, int dim, uint64_t *state) {
+    for (int k = 0; k < 4 && cloud->count; k++) {
+        double n[3], end[2][3];
+        int which[2];
+        draw_direction(dim, state, n);
+        ck_assert_double_eq(brunt_cloud_extent(cloud, true, n, &which[0]), brunt_cloud_extent(own, true, n, &which[1]));
+        ck_assert_int_eq(which[0], which[1]);
+        const int some[2] = {which[0], draw_whole(state, cloud->count)};
+        brunt_cloud_end(cloud, some[1], true, n, end[0]), brunt_cloud_end(own, some[1], true, n, end[1]);
+        for (int a = 0; a < 3; a++) ck_assert_double_eq(end[0][a], end[1][a]);
+        ck_assert_double_eq(brunt_cloud_ball_of(cloud, some, 2), brunt_cloud_ball_of(own, some, 2));
+    }
+    ck_assert(!cloud->count || brunt_cloud_ball(cloud) == brunt_cloud_ball(own));
+}
+
 START_TEST(a_cloud_is_what_the_node_feels) {
     uint64_t state = (uint64_t)_i + 7;
     const form is = forms[_i];
@@ -188,10 +222,16 @@ START_TEST(nodes_of_a_slot_see_what_each_would_alone) {
             p->slots = slots;
             ck_assert_int_eq(brunt_vicinity_look(&vicinity, node, &cloud, NULL), BRUNT_OK);
             ck_assert_int_eq(cloud.count, alone.count);
-            for (int r = 0; r < BRUNT_ROWS; r++)
-                for (int i = 0; i < cloud.count; i++)
-                    ck_assert_double_eq(cloud.data[(size_t)r * cloud.stride + (size_t)i],
-                                        alone.data[(size_t)r * alone.stride + (size_t)i]);
+            check_ends(&cloud, &alone, body->grid.dim, &state);
+            for (int i = 0; i < cloud.count; i++) {
+                const int own = brunt_cloud_source(&cloud, i), other = brunt_cloud_source(&alone, i);
+                for (size_t r = 0; r < 6; r++)
+                    ck_assert_double_eq(cloud.b[r * cloud.b_stride + (size_t)own],
+                                        alone.b[r * alone.b_stride + (size_t)other]);
+                for (size_t r = 0; r < BRUNT_ROWS; r += r == 2 ? BRUNT_ROW_VOLUME - 2 : 1)
+                    ck_assert_double_eq(cloud.data[r * cloud.stride + (size_t)i],
+                                        alone.data[r * alone.stride + (size_t)i]);
+            }
             for (int i = 0; i < cloud.count; i++) {
                 const int source = brunt_cloud_source(&cloud, i);
                 ck_assert_int_eq(brunt_cloud_find(&cloud, source), i);
@@ -268,12 +308,6 @@ static double apart_along(const brunt_cloud *a, const brunt_cloud *b, bool reach
     const double back[3] = {-n[0], -n[1], -n[2]};
     int which;
     return -brunt_cloud_extent(b, reach, back, &which) - brunt_cloud_extent(a, reach, n, &which);
-}
-
-static void draw_direction(int dim, uint64_t *state, double n[3]) {
-    double length = 0;
-    for (int a = 0; a < 3; a++) n[a] = a < dim ? draw_between(state, -1, 1) : 0, length += n[a] * n[a];
-    for (int a = 0; a < 3; a++) n[a] /= sqrt(length);
 }
 
 // The distance is that along its direction, along no other are they farther apart, and swapped it is the same.
