@@ -144,9 +144,10 @@ static bool bound_distances(const brunt_contact_surface *s, const brunt_node_to_
     quad least = quad_set(INFINITY);
     quad_mask which = {0}, number = {0, 1, 2, 3};
     for (int32_t q = 0; q < count; q += 4) {
-        const int32_t *four = face + q, rest[4] = {four[0], face[q + 1 < last ? q + 1 : last],
-                                                   face[q + 2 < last ? q + 2 : last], face[last]};
-        if (q + 4 > count) four = rest; // beyond the last there is the last
+        const int32_t *four = face + q;
+        int32_t rest[4]; // beyond the last there is the last
+        for (int i = 0; i < 4 && q + 4 > count; i++) rest[i] = face[q + i < last ? q + i : last];
+        if (q + 4 > count) four = rest;
         const quad square = quad_sums(ways_to(box[four[0]], x), ways_to(box[four[1]], x), ways_to(box[four[2]], x),
                                       ways_to(box[four[3]], x));
         const quad_mask less = square < least;
