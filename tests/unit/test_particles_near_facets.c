@@ -166,13 +166,14 @@ static brunt_world *make_world(int which) {
         b->method = which == 2 ? BRUNT_MEMBRANE : BRUNT_FEM, b->size = which == 3 ? 2.3 : 1.1;
         b->element = which == 2 ? BRUNT_MEMBRANE_QUAD4 : dim == 2 ? BRUNT_QUAD4 : which == 3 ? BRUNT_TET4 : BRUNT_HEX8;
         if (which == 2) {
-            static char top[1][BRUNT_NAME_LENGTH] = {"zmin"};
-            b->shape.min[2] = -0.01, b->thickness = 0.02, b->faces = top, b->face_count = 1;
+            b->shape.min[2] = -0.01, b->thickness = 0.02;
+            b->faces = brunt_alloc(sizeof *b->faces), b->face_count = 1;
+            snprintf(*b->faces, sizeof *b->faces, "zmin");
         }
         def_velocity(b, 0, 0, dim == 2 ? 0 : 0.003);
         b->spin[dim == 2 ? 2 : 1] = -0.01, b->spin_about[0] = 3;
     }
-    return world_from(&def);
+    return world_take(&def);
 }
 
 // Whether what a particle has found is a facet that it would pass, and what its target is: by its own velocity.
