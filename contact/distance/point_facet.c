@@ -150,7 +150,7 @@ static inline int clear_sector(const brunt_contact_surface *s, int32_t face, con
 }
 
 // The nearest point of a quadrilateral where it is inside the triangle that x is clearly over. Whether it is.
-static inline bool closest_in_sector(const brunt_contact_surface *s, int32_t face, const double x[3], double beyond,
+static inline bool closest_in_sector(const brunt_contact_surface *s, int32_t face, const double x[3],
                                      brunt_closest *best) {
     const int t = clear_sector(s, face, x);
     if (t == 4) return false;
@@ -159,7 +159,6 @@ static inline bool closest_in_sector(const brunt_contact_surface *s, int32_t fac
     on_triangle(p, x, best->d, &best->inside);
     if (!best->inside) return false;
     best->square = dot(best->d, best->d), best->triangle = t, best->triangles = 0;
-    if (best->square > beyond) return true;
     unit_normal(p, best->normal);
     for (int k = 0; k < 3; k++) best->normal[k] += 0., best->d[k] += 0.; // no zero has a sign, as in a mean
     return true;
@@ -212,7 +211,7 @@ static brunt_closest on_rim(const brunt_contact_surface *s, int32_t face, int fi
 static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, int32_t face, const double x[3],
                                               double beyond) {
     brunt_closest best = {.square = INFINITY};
-    if (closest_in_sector(s, face, x, beyond, &best)) return best;
+    if (beyond == INFINITY && closest_in_sector(s, face, x, &best)) return best; // what is further is seldom over it
     const four_triangles f = triangles_of(s, face);
     bool between;
     quad way[3];
