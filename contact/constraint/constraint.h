@@ -54,6 +54,7 @@ typedef struct brunt_touch_energy {
     double held;           // [J]
     int32_t met, releases; // of its constraints in this step: how many there are, and do not push
     bool pushed;           // some do
+    int32_t claims;        // touches of edges that it goes to, before the step
     double alone;          // [J] of this step: the most that one of its pushes would take of its own mass alone
 } brunt_touch_energy;
 

@@ -67,7 +67,10 @@ void brunt_release_note(brunt_constraint_set *p, int64_t k) {
     const double motion = dot(old, old) + dot(now, now), J = c->normal_impulse;
     r->pushes = J > LEAST_PUSH * c->scale * sqrt(motion);
     r->alone = 0.5 * fmax(J * J / c->scale, LEAST_MOTION * c->scale * motion);
-    if (r->pushes && dot(old, c->n) > -p->leap) r->taken = -0.5 * J * (dot(old, c->n) + dot(now, c->n));
+    if (!r->pushes || !(dot(old, c->n) > -p->leap)) return;
+    // What friction gives in a push, where all that push turn the slip about, it has of the pushes.
+    const double *F = c->friction_impulse, rubbed = -0.5 * (dot(F, old) + dot(F, now));
+    r->taken = -0.5 * J * (dot(old, c->n) + dot(now, c->n)) + fmin(rubbed, 0);
 }
 
 // Whether one gives back.

@@ -88,11 +88,20 @@ static bool cross_between(const brunt_contact_surface *s, const edge_pair *p, do
     return between_nodes(at.s, at.aa, touch) && between_nodes(at.t, at.bb, touch);
 }
 
-// Of either edge's nodes the one that has most of the crossing: what touches take is kept there.
-static int32_t nearest_node(const edge_pair *p) {
-    const bool first = fabs(p->at.s - 0.5) >= fabs(p->at.t - 0.5);
-    const double at = first ? p->at.s : p->at.t;
-    return p->edge[first ? 0 : 1]->node[at < 0.5 ? 0 : 1];
+// The nodes of both edges; first the one that has most of the crossing: what touches take is kept there.
+static touched_edges touch_of(const edge_pair *p) {
+    const bool second = fabs(p->at.s - 0.5) < fabs(p->at.t - 0.5);
+    const int32_t *own = p->edge[second]->node, *other = p->edge[!second]->node;
+    const int at = (second ? p->at.t : p->at.s) < 0.5 ? 0 : 1;
+    return (touched_edges){{own[at], own[!at], other[0], other[1]}};
+}
+
+// Whether a touch of edges about here has something to be given back.
+static bool holds(const brunt_node_to_facet *f, const edge_pair *p) {
+    const touched_edges touch = touch_of(p);
+    bool any = false;
+    for (int i = 0; i < 4; i++) any = any || brunt_node_holds(&f->touches, touch.node[i], TOUCHED_EDGE);
+    return any;
 }
 
 // Whether two edges meet within the step, and how.
@@ -109,9 +118,7 @@ static bool edges_meet(const brunt_contact_context *m, const brunt_node_to_facet
     if (p->gap < -way_across(p)) return false;
     const double approach = rate(p, s->v);
     p->target = brunt_node_to_facet_target(s, p->gap, approach, p->gap < 0 ? rate(p, s->old) : 0, m->dt);
-    if (!(approach < p->target + TOUCH * s->mean_edge / m->dt) &&
-        !brunt_node_holds(&f->touches, nearest_node(p), TOUCHED_EDGE))
-        return false;
+    if (!(approach < p->target + TOUCH * s->mean_edge / m->dt) && !holds(f, p)) return false;
     return cross_between(s, p, p->gap > 0 && approach < 0 ? fmin(p->gap / -approach, m->dt) : 0);
 }
 
@@ -144,8 +151,11 @@ static int add_constraint(const brunt_contact_context *m, brunt_node_to_facet *f
     memcpy(constraint->facet, p->n, sizeof constraint->facet);
     constraint->target = p->target;
     constraint->tag = p->at.s < 0.5 ? a[0] : a[1];
-    if (!s->membrane.side || !(s->membrane.side[p->body[0]].faces || s->membrane.side[p->body[1]].faces))
-        constraint->touch = brunt_node_touch(&f->touches, nearest_node(p), TOUCHED_EDGE);
+    if (!s->membrane.side || !(s->membrane.side[p->body[0]].faces || s->membrane.side[p->body[1]].faces)) {
+        const touched_edges touch = touch_of(p);
+        constraint->touch = brunt_node_touch(&f->touches, touch.node[0], TOUCHED_EDGE);
+        if (constraint->touch && brunt_node_touches_cross(&f->touches, &touch, error)) return BRUNT_FAILED;
+    }
     for (int i = 0; i < 4; i++) {
         const int32_t node = i < 2 ? a[i] : b[i - 2];
         const double share = i < 2 ? p->at.s : p->at.t, weight = i % 2 ? share : 1 - share,
@@ -231,10 +241,9 @@ static int bodies_meet(const brunt_contact_context *m, brunt_node_to_facet *f, c
     return BRUNT_OK;
 }
 
-int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints,
-                         brunt_error *error) {
+static int find_crossings(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints,
+                          brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
-    if (!f->edges.near_count) return BRUNT_OK;
     if (RESERVE(&f->edges, feature_first, 2 * (size_t)s->fem_count, "bodies with edges that meet", error))
         return BRUNT_FAILED;
     memset(f->edges.feature_first, 0xff, 2 * (size_t)s->fem_count * sizeof *f->edges.feature_first); // -1
@@ -250,4 +259,11 @@ int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f,
         if (bodies_meet(m, f, fem, &shared, constraints, error)) return BRUNT_FAILED;
     }
     return BRUNT_OK;
+}
+
+int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints,
+                         brunt_error *error) {
+    f->touches.edges_count = 0;
+    if (f->edges.near_count && find_crossings(m, f, constraints, error)) return BRUNT_FAILED;
+    return brunt_node_touches_hand_over(&f->touches, f->nodes.count, error);
 }

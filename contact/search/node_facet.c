@@ -126,7 +126,8 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         const double approach = brunt_node_to_facet_approach(&under, h->n, s->v[n], s->v);
         h->target = brunt_node_to_facet_target(
             s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(&under, h->n, s->old[n], s->old) : 0, m->dt);
-        if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET))
+        if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET) &&
+            !brunt_node_holds(&f->touches, n, TOUCHED_EDGE))
             continue;
         if (h->feature.any) keep_master(f, s, h, s->x[n], worker);
         *node_candidate_of(f, s, n, kept++) = *h;

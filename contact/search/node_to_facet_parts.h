@@ -42,6 +42,13 @@ int brunt_node_touches_renew(node_touches *touches, const brunt_contact_surface 
 // A node of body k that is in no constraint of the step: what it holds is lost, of facets where none is near any more.
 void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *surface, int k, int32_t n);
 
+// Notes that two edges touch in this step. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_node_touches_cross(node_touches *touches, const touched_edges *edges, brunt_error *error);
+
+// After all constraints of the step are found, of nodes `constraints_of_node`: what touches have taken goes where they
+// go on. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_node_touches_hand_over(node_touches *touches, const uint8_t *constraints_of_node, brunt_error *error);
+
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error);

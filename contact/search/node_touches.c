@@ -7,6 +7,8 @@ static const double FAR = 0.5; // mean edges: beyond, a node has left what it to
 void brunt_node_touches_free(node_touches *t) {
     brunt_free(t->of);
     brunt_free(t->spare);
+    brunt_free(t->edges);
+    brunt_free(t->keeper);
 }
 
 int brunt_node_touches_make(brunt_node_to_facet *f, int32_t nodes, brunt_error *error) {
@@ -26,6 +28,83 @@ void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *s, 
         of[TOUCHED_FACET].held = of[TOUCHED_EDGE].held = 0;
 }
 
+int brunt_node_touches_cross(node_touches *t, const touched_edges *edges, brunt_error *error) {
+    const size_t used = (size_t)t->edges_count;
+    if (BRUNT_CAPACITY(t->edges, used + 1, used, "edges that touch", error)) return BRUNT_FAILED;
+    t->edges[t->edges_count++] = *edges;
+    return BRUNT_OK;
+}
+
+static int add_keeper(node_touches *t, int32_t n, brunt_error *error) {
+    const size_t used = (size_t)t->keeper_count;
+    if (BRUNT_CAPACITY(t->keeper, used + 1, used, "nodes of edges that touch", error)) return BRUNT_FAILED;
+    t->keeper[t->keeper_count++] = n;
+    return BRUNT_OK;
+}
+
+// Of what node n holds where no edges of this step keep anything, and where it is on no facet.
+static brunt_touch_energy *left_at(const node_touches *t, int32_t n, touched what, const uint8_t *constraints_of_node) {
+    brunt_touch_energy *left = &t->of[n][what];
+    return (what == TOUCHED_EDGE ? left->met : constraints_of_node[n]) ? NULL : left;
+}
+
+// Marks (`met`) of what is kept for edges the nodes where edges touch.
+static void mark_edges(const node_touches *t) {
+    for (int32_t q = 0; q < t->keeper_count; q++) t->of[t->keeper[q]][TOUCHED_EDGE].met = 0;
+    for (int32_t p = 0; p < t->edges_count; p++)
+        for (int i = 0; i < 4; i++) {
+            brunt_touch_energy *of = t->of[t->edges[p].node[i]];
+            of[TOUCHED_EDGE].met = of[TOUCHED_EDGE].claims = of[TOUCHED_FACET].claims = 0;
+        }
+    for (int32_t p = 0; p < t->edges_count; p++) t->of[t->edges[p].node[0]][TOUCHED_EDGE].met = 1;
+}
+
+// What is left at the nodes of edges that touch goes to these, in equal shares whatever their order.
+static void give_to_edges(const node_touches *t, const uint8_t *constraints_of_node) {
+    enum { CLAIM, TAKE, CLEAR, ROUNDS };
+    for (int round = 0; round < ROUNDS; round++)
+        for (int32_t p = 0; p < t->edges_count; p++)
+            for (int k = 0; k < 8; k++) {
+                const int32_t n = t->edges[p].node[k / 2];
+                brunt_touch_energy *left = left_at(t, n, k % 2 ? TOUCHED_FACET : TOUCHED_EDGE, constraints_of_node);
+                if (!left) continue;
+                if (round == CLAIM) left->claims++;
+                if (round == TAKE) t->of[t->edges[p].node[0]][TOUCHED_EDGE].held += left->held / left->claims;
+                if (round == CLEAR) left->held = 0;
+            }
+}
+
+// A touch that slides along an edge comes to be nearest to another node, edges that flatten are edges no more, and a
+// node that leaves a facet may be on its rim: what was taken goes with the touch, unless another one is where it is
+// kept.
+int brunt_node_touches_hand_over(node_touches *t, const uint8_t *constraints_of_node, brunt_error *error) {
+    mark_edges(t);
+    give_to_edges(t, constraints_of_node);
+    int32_t kept = 0;
+    for (int32_t q = 0; q < t->keeper_count; q++) {
+        const int32_t n = t->keeper[q];
+        brunt_touch_energy *edge = &t->of[n][TOUCHED_EDGE];
+        if (edge->met) continue;
+        if (constraints_of_node[n]) t->of[n][TOUCHED_FACET].held += edge->held, edge->held = 0;
+        if (edge->held != 0) t->keeper[kept++] = n;
+    }
+    t->keeper_count = kept;
+    for (int32_t p = 0; p < t->edges_count; p++) {
+        brunt_touch_energy *own = &t->of[t->edges[p].node[0]][TOUCHED_EDGE];
+        if (own->met == 1 && add_keeper(t, t->edges[p].node[0], error)) return BRUNT_FAILED;
+        own->met = 2; // listed
+    }
+    return BRUNT_OK;
+}
+
+// Anew, from what all nodes hold.
+static int list_keepers(node_touches *t, int32_t nodes, brunt_error *error) {
+    t->keeper_count = 0;
+    for (int32_t n = 0; n < nodes; n++)
+        if (t->of[n][TOUCHED_EDGE].held != 0 && add_keeper(t, n, error)) return BRUNT_FAILED;
+    return BRUNT_OK;
+}
+
 // Those of a surface that was renewed, in its order; nodes that are new have taken nothing.
 int brunt_node_touches_renew(node_touches *t, const brunt_contact_surface *s, brunt_error *error) {
     const brunt_surface_change *change = &s->renewal.change;
@@ -38,7 +117,7 @@ int brunt_node_touches_renew(node_touches *t, const brunt_contact_surface *s, br
     for (size_t n = 0; n < nodes; n++)
         if (change->node_was[n] >= 0) memcpy(t->spare[n], t->of[change->node_was[n]], sizeof *t->of);
     memcpy(t->of, t->spare, nodes * sizeof *t->of);
-    return BRUNT_OK;
+    return list_keepers(t, s->node_count, error);
 }
 
 double brunt_node_to_facet_held(const brunt_node_to_facet *f, const brunt_contact_surface *s) {
@@ -68,7 +147,7 @@ int brunt_node_touches_state_set(brunt_node_to_facet *f, const brunt_contact_sur
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
             for (int what = 0; what < TOUCHED_COUNT; what++)
                 f->touches.of[n][what].held = in[TOUCHED_COUNT * brunt_surface_slot(s, k, n) + what];
-    return BRUNT_OK;
+    return list_keepers(&f->touches, s->node_count, error);
 }
 
 void brunt_node_touches_validate(const node_touches *t, int32_t nodes) {

@@ -7,10 +7,18 @@
 
 typedef enum touched { TOUCHED_FACET, TOUCHED_EDGE, TOUCHED_PLANE, TOUCHED_COUNT } touched;
 
+// Two edges that touch: what that takes is kept at node[0], which has most of the crossing.
+typedef struct touched_edges {
+    int32_t node[4];
+} touched_edges;
+
 typedef struct node_touches {
     brunt_touch_energy (*of)[TOUCHED_COUNT];    // each node's; NULL: nothing is given back
     brunt_touch_energy (*spare)[TOUCHED_COUNT]; // while they are put in a new order
-    size_t of_capacity, spare_capacity;
+    touched_edges *edges;                       // of this step
+    int32_t *keeper;                            // all nodes that hold something of edges, and others
+    int32_t edges_count, keeper_count;
+    size_t of_capacity, spare_capacity, edges_capacity, keeper_capacity;
 } node_touches;
 
 // The touch of a node; NULL: none is kept.

@@ -197,25 +197,26 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ cubes
 
-static brunt_world_def oblique_cubes(brunt_element_kind kind, double h, brunt_touch_kind touch) {
+static brunt_world_def oblique_cubes(brunt_element_kind kind, double h, double speed, brunt_touch_kind touch) {
     brunt_world_def def = begin(3, 0, touch);
     def.step = 1e-4 * h;
     def_material(&def, "neo-hookean", 2700, 1e8, 0.3);
-    def_velocity(mesh(def_box(&def, "a", XYZ(-1.5, -1.5, -1.5), XYZ(1.5, 1.5, 1.5)), kind, h), 0, 35, 0);
+    def_velocity(mesh(def_box(&def, "a", XYZ(-1.5, -1.5, -1.5), XYZ(1.5, 1.5, 1.5)), kind, h), 0, 35 * speed, 0);
     brunt_body_def *b = mesh(def_box(&def, "b", XYZ(-1.5, -1.5, -1.5), XYZ(1.5, 1.5, 1.5)), kind, h);
-    def_velocity(b, -15, -35, -15);
+    def_velocity(b, -15 * speed, -35 * speed, -15 * speed);
     b->place = brunt_placement_translate(b->place, XYZ(0, 3.8, 0));
     b->place = brunt_placement_rotate(b->place, XYZ(1, 0, 0), 22 * PI / 180, XYZ(0, 0, 0));
     return def;
 }
 
-// Edges cross, nodes meet facets: at least 0.99 comes back, and never more than there was. In the middle the rest is
-// held.
+// Edges cross and slide over nodes, nodes meet facets and leave over rims, what was an edge is bent flat at three times
+// the speed, when elements go by a tenth of the waves' speed: at least 0.999 comes back, and never more than there was.
 START_TEST(cubes_keep_their_energy) {
-    brunt_world_def def = oblique_cubes(_i ? BRUNT_HEX8 : BRUNT_TET4, 0.6, BRUNT_TOUCH_ELASTIC);
+    const double speed = _i < 2 ? 1 : 3;
+    brunt_world_def def = oblique_cubes(_i % 2 ? BRUNT_HEX8 : BRUNT_TET4, 0.6, speed, BRUNT_TOUCH_ELASTIC);
     brunt_world *world = world_take(&def);
     double most = 0;
-    while (brunt_world_time(world) < 0.15) {
+    while (brunt_world_time(world) < 0.15 / speed) {
         world_steps(world, 4);
         const brunt_energy now = world_energy(world);
         most = fmax(most, (stored(world) - fmax(now.error, 0)) / now.initial); // the integrator's own error aside
@@ -224,22 +225,24 @@ START_TEST(cubes_keep_their_energy) {
     const brunt_momentum p = world_momentum(world);
     printf("  cubes: kept %.4f, most %.6f, still held %.1e, drift %.1e %.1e\n", stored(world) / e.initial, most,
            e.contact_held / e.initial, p.linear_drift, p.angular_drift);
-    ck_assert_double_ge(stored(world) / e.initial, 0.99);
+    ck_assert_double_ge(stored(world) / e.initial, 0.999);
     ck_assert_double_le(most, 1 + 1e-4);
     ck_assert_double_le(p.linear_drift, ROUNDING);
     ck_assert_double_le(p.angular_drift, 100 * ROUNDING);
-    ck_assert_double_lt(fabs(e.contact_held), 5e-3 * e.initial);
+    ck_assert_double_lt(fabs(e.contact_held), 1e-3 * e.initial);
     brunt_world_destroy(world);
 }
 END_TEST
 
 // In the middle of it, where something is held: from a saved state the same bits. Without what is held they are others.
+// Later some is held at nodes of edges that touch no more.
 START_TEST(restart_while_something_is_held) {
-    brunt_world_def def = oblique_cubes(BRUNT_TET4, 0.75, BRUNT_TOUCH_ELASTIC);
+    const double speed = _i ? 3 : 1;
+    brunt_world_def def = oblique_cubes(_i ? BRUNT_HEX8 : BRUNT_TET4, 0.75, speed, BRUNT_TOUCH_ELASTIC);
     brunt_world *world = world_from(&def), *other = world_take(&def);
-    world_until(world, 0.02);
+    world_until(world, (0.02 + 0.005 * _i) / speed);
     const brunt_energy e = world_energy(world);
-    ck_assert_double_gt(e.contact_held, 1e-3 * e.initial);
+    ck_assert_double_gt(e.contact_held, _i ? 0 : 1e-3 * e.initial);
     world_copy_state(world, other);
     ck_assert_double_eq(world_energy(other).contact_held, e.contact_held);
     world_steps(world, 100), world_steps(other, 100);
@@ -254,7 +257,7 @@ int main(void) {
     ADD_LOOP(walls_that_stand_and_move, 5);
     ADD(held_and_heavy_are_walls);
     ADD(release_rubs);
-    ADD_LOOP(cubes_keep_their_energy, 2);
-    ADD(restart_while_something_is_held);
+    ADD_LOOP(cubes_keep_their_energy, 4);
+    ADD_LOOP(restart_while_something_is_held, 8);
     return suite_main(suite);
 }

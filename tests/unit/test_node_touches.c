@@ -1,0 +1,117 @@
+// Where what touches have taken of nodes is kept from step to step (search/node_touches.h): it goes with the touch.
+#include <check.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "contact/search/node_to_facet_parts.h"
+#include "tests/support/suite.h"
+
+enum { NODES = 6 };
+
+typedef struct kept {
+    node_touches touches;
+    uint8_t constraints_of_node[NODES];
+} kept;
+
+static kept keep(void) {
+    kept k = {.touches = {.edges_count = 0}};
+    ck_assert_int_eq(BRUNT_NEW(k.touches.of, NODES, "touches", NULL), BRUNT_OK);
+    return k;
+}
+
+static double *held(kept *k, int node, touched what) { return &k->touches.of[node][what].held; }
+
+// A step in which some edges touch, `crossing` of them, by their nodes.
+static void step(kept *k, int crossing, const touched_edges edges[]) {
+    k->touches.edges_count = 0;
+    for (int i = 0; i < crossing; i++)
+        ck_assert_int_eq(brunt_node_touches_cross(&k->touches, &edges[i], NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_node_touches_hand_over(&k->touches, k->constraints_of_node, NULL), BRUNT_OK);
+}
+
+static double sum(kept *k) {
+    double all = 0;
+    for (int n = 0; n < NODES; n++)
+        for (int what = 0; what < TOUCHED_COUNT; what++) all += *held(k, n, (touched)what);
+    return all;
+}
+
+// A crossing slides along either edge: it is kept at the node that is nearest now, of whichever edge.
+START_TEST(goes_along_an_edge) {
+    kept k = keep();
+    step(&k, 1, &(touched_edges){{0, 1, 2, 3}});
+    *held(&k, 0, TOUCHED_EDGE) = 8;
+    static const touched_edges next[] = {{{1, 0, 2, 3}}, {{3, 2, 0, 1}}, {{0, 1, 2, 3}}};
+    step(&k, 1, &next[_i]);
+    ck_assert_double_eq(*held(&k, next[_i].node[0], TOUCHED_EDGE), 8);
+    ck_assert_double_eq(sum(&k), 8);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
+// Two crossings are where one was: each has half, whichever is first.
+START_TEST(is_shared) {
+    kept k = keep();
+    *held(&k, 1, TOUCHED_EDGE) = 8, *held(&k, 1, TOUCHED_FACET) = 2;
+    static const touched_edges both[2][2] = {{{{0, 1, 2, 3}}, {{4, 1, 5, 3}}}, {{{4, 1, 5, 3}}, {{0, 1, 2, 3}}}};
+    step(&k, 2, both[_i]);
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 5);
+    ck_assert_double_eq(*held(&k, 4, TOUCHED_EDGE), 5);
+    ck_assert_double_eq(sum(&k), 10);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
+// Another crossing is at the node where it was kept: it stays there. What is owed goes along as what is held.
+START_TEST(stays_where_others_are) {
+    kept k = keep();
+    *held(&k, 0, TOUCHED_EDGE) = 8, *held(&k, 1, TOUCHED_EDGE) = -2;
+    step(&k, 2, (touched_edges[]){{{2, 3, 0, 1}}, {{0, 4, 5, 3}}});
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 8);
+    ck_assert_double_eq(*held(&k, 2, TOUCHED_EDGE), -2);
+    ck_assert_double_eq(sum(&k), 6);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
+// Edges that flatten are features no more: what they hold waits until its node is on a facet, and goes there.
+START_TEST(goes_to_facets) {
+    kept k = keep();
+    step(&k, 1, &(touched_edges){{0, 1, 2, 3}});
+    *held(&k, 0, TOUCHED_EDGE) = 8, *held(&k, 0, TOUCHED_FACET) = 1;
+    step(&k, 0, NULL), step(&k, 0, NULL);
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 8);
+    k.constraints_of_node[0] = 1;
+    if (_i) step(&k, 1, &(touched_edges){{0, 1, 2, 3}}); // or is met again
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 8);
+    step(&k, 0, NULL);
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 0);
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_FACET), 9);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
+// A node leaves its facet over the rim, where edges cross; or stays on it.
+START_TEST(goes_to_edges) {
+    kept k = keep();
+    *held(&k, 3, TOUCHED_FACET) = 8, *held(&k, 3, TOUCHED_PLANE) = 1;
+    k.constraints_of_node[3] = (uint8_t)_i;
+    step(&k, 1, &(touched_edges){{0, 1, 2, 3}});
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), _i ? 0 : 8);
+    ck_assert_double_eq(*held(&k, 3, TOUCHED_FACET), _i ? 8 : 0);
+    ck_assert_double_eq(*held(&k, 3, TOUCHED_PLANE), 1);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("node_touches");
+    TCase *tests = tcase_create("hand_over");
+    tcase_add_loop_test(tests, goes_along_an_edge, 0, 3);
+    tcase_add_loop_test(tests, is_shared, 0, 2);
+    tcase_add_test(tests, stays_where_others_are);
+    tcase_add_loop_test(tests, goes_to_facets, 0, 2);
+    tcase_add_loop_test(tests, goes_to_edges, 0, 2);
+    suite_add_tcase(suite, tests);
+    return suite_main(suite);
+}
