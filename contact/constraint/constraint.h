@@ -51,11 +51,14 @@ typedef struct brunt_constraint_entry {
 
 // What pushes have taken of a slave, to be given back at its release (release.h).
 typedef struct brunt_touch_energy {
-    double held;           // [J]
-    int32_t met, releases; // of its constraints in this step: how many there are, and do not push
-    bool pushed;           // some do
-    int32_t claims;        // touches of edges that it goes to, before the step
-    double alone;          // [J] of this step: the most that one of its pushes would take of its own mass alone
+    double held;      // [J]
+    int32_t partner;  // of whom, as constraints say; 0: of anyone
+    int32_t met;      // of its constraints in this step: how many there are ...
+    int32_t releases; // ... and how many are of that partner and do not push
+    bool same;        // some are of that partner
+    bool pushed;      // some push
+    int32_t claims;   // touches of edges that it goes to, before the step
+    double alone;     // [J] of this step: the most that one of its pushes would take of its own mass alone
 } brunt_touch_energy;
 
 typedef struct brunt_release brunt_release; // release.c
@@ -75,6 +78,7 @@ typedef struct brunt_constraint {
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *account; // where the point is recorded: impulse on the slave times `sign`
     brunt_touch_energy *touch;      // of the slave; NULL: what its pushes take is lost
+    int32_t partner;                // of the touch: number of the other body + 1, or -1 - that of the plane
     double sign; // of a body with itself 0: it gets both, and the account neither, but what they dissipate
     double area; // [m^2] it stands for in the account's area
     int32_t tag; // the caller's

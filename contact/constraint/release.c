@@ -20,6 +20,7 @@ struct brunt_release {
     brunt_touch_energy *touch; // the constraint's
     double taken;              // [J] by its push
     double alone;              // [J] what it would take of its own mass alone
+    int32_t partner;           // the constraint's
     bool pushes;               // by more than rounding, as of what slides along a wall
     bool may;                  // one that does not push may give back
     bool settled;              // it releases
@@ -61,7 +62,7 @@ int brunt_release_begin(brunt_constraint_set *p, brunt_error *error) {
 void brunt_release_note(brunt_constraint_set *p, int64_t k) {
     const brunt_constraint *c = &p->constraint[k];
     brunt_release *r = &p->release[k];
-    *r = (brunt_release){.touch = c->touch, .may = c->scale > 0 && c->gap >= -p->shallow};
+    *r = (brunt_release){.touch = c->touch, .partner = c->partner, .may = c->scale > 0 && c->gap >= -p->shallow};
     if (!c->touch || !(c->normal_impulse > 0)) return;
     const double *old = p->rates[k].old, *now = p->rates[k].now;
     const double motion = dot(old, old) + dot(now, now), J = c->normal_impulse;
@@ -73,25 +74,42 @@ void brunt_release_note(brunt_constraint_set *p, int64_t k) {
     r->taken = -0.5 * J * (dot(old, c->n) + dot(now, c->n)) + fmin(rubbed, 0);
 }
 
+// Whether what its touch holds is for a constraint.
+static bool is_for(const brunt_release *r) { return !r->touch->partner || r->touch->partner == r->partner; }
+
 // Whether one gives back.
-static bool releases(const brunt_release *r) { return r->touch && !r->touch->pushed && r->touch->held > 0 && r->may; }
+static bool releases(const brunt_release *r) {
+    return r->touch && !r->touch->pushed && r->touch->held > 0 && r->may && is_for(r);
+}
+
+// Adds what a push has taken. Where nothing is there any more of whom the touch was, what is held of them is lost: it
+// would throw off whatever touches next, however light it is. Of several that are new it is of the one that pushes
+// most.
+static void hold(const brunt_release *r, brunt_touch_energy *touch) {
+    if (!touch->same && touch->partner && !touch->pushed) touch->held = fmin(touch->held, 0);
+    if (!touch->same && r->alone > touch->alone) touch->partner = r->partner;
+    touch->pushed = true;
+    touch->held += r->taken;
+    touch->alone = fmax(touch->alone, r->alone);
+}
 
 // Books what pushes have taken. Whether anything is to be given back.
 static bool account_touches(brunt_constraint_set *p) {
     bool any = false;
     const brunt_release *end = p->release + p->constraint_count;
     for (const brunt_release *r = p->release; r < end; r++)
-        if (r->touch) *r->touch = (brunt_touch_energy){.held = r->touch->held};
+        if (r->touch)
+            *r->touch =
+                (brunt_touch_energy){.held = r->touch->held, .partner = r->touch->held != 0 ? r->touch->partner : 0};
+    for (const brunt_release *r = p->release; r < end; r++)
+        if (r->touch && r->touch->partner == r->partner) r->touch->same = true;
     for (const brunt_release *r = p->release; r < end; r++) {
         if (!r->touch) continue;
         r->touch->met++;
-        if (r->pushes) {
-            r->touch->pushed = true;
-            r->touch->held += r->taken;
-            r->touch->alone = fmax(r->touch->alone, r->alone);
-        } else if (r->may) {
+        if (r->pushes)
+            hold(r, r->touch);
+        else if (r->may && is_for(r))
             r->touch->releases++;
-        }
     }
     for (const brunt_release *r = p->release; r < end; r++) {
         // What presses without an approach takes rounding alone, the root of which would be a kick.

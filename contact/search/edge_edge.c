@@ -93,7 +93,7 @@ static touched_edges touch_of(const edge_pair *p) {
     const bool second = fabs(p->at.s - 0.5) < fabs(p->at.t - 0.5);
     const int32_t *own = p->edge[second]->node, *other = p->edge[!second]->node;
     const int at = (second ? p->at.t : p->at.s) < 0.5 ? 0 : 1;
-    return (touched_edges){{own[at], own[!at], other[0], other[1]}};
+    return (touched_edges){{own[at], own[!at], other[0], other[1]}, {p->body[second], p->body[!second]}};
 }
 
 // Whether a touch of edges about here has something to be given back.
@@ -153,6 +153,7 @@ static int add_constraint(const brunt_contact_context *m, brunt_node_to_facet *f
     constraint->tag = p->at.s < 0.5 ? a[0] : a[1];
     if (!s->membrane.side || !(s->membrane.side[p->body[0]].faces || s->membrane.side[p->body[1]].faces)) {
         const touched_edges touch = touch_of(p);
+        constraint->partner = touch.body[1] + 1;
         constraint->touch = brunt_node_touch(&f->touches, touch.node[0], TOUCHED_EDGE);
         if (constraint->touch && brunt_node_touches_cross(&f->touches, &touch, error)) return BRUNT_FAILED;
     }

@@ -172,7 +172,7 @@ void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_
     memcpy(constraint->n, h->n, sizeof constraint->n);
     constraint->gap = h->gap;
     constraint->friction = pair->friction;
-    constraint->account = &pair->last;
+    constraint->account = &pair->last, constraint->partner = h->body + 1;
     constraint->sign = (body > h->body) - (body < h->body);
 }
 

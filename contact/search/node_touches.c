@@ -42,21 +42,40 @@ static int add_keeper(node_touches *t, int32_t n, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Of what node n holds where no edges of this step keep anything, and where it is on no facet.
-static brunt_touch_energy *left_at(const node_touches *t, int32_t n, touched what, const uint8_t *constraints_of_node) {
-    brunt_touch_energy *left = &t->of[n][what];
-    return (what == TOUCHED_EDGE ? left->met : constraints_of_node[n]) ? NULL : left;
+// `met`, of what is kept for edges, in this step: nothing touches there; edges of one other body do; of several, or of
+// another than those that what is held is of; they are listed.
+enum { NONE_TOUCH, TOUCHES, CONTESTED, LISTED };
+
+// Whether what is held is of a partner; what is of 0 is of anyone.
+static bool is_of(const brunt_touch_energy *touch, int32_t partner) {
+    return touch->held == 0 || !touch->partner || touch->partner == partner;
 }
 
-// Marks (`met`) of what is kept for edges the nodes where edges touch.
 static void mark_edges(const node_touches *t) {
-    for (int32_t q = 0; q < t->keeper_count; q++) t->of[t->keeper[q]][TOUCHED_EDGE].met = 0;
-    for (int32_t p = 0; p < t->edges_count; p++)
+    const touched_edges *const end = t->edges + t->edges_count;
+    for (int32_t q = 0; q < t->keeper_count; q++) t->of[t->keeper[q]][TOUCHED_EDGE].met = NONE_TOUCH;
+    for (const touched_edges *p = t->edges; p < end; p++)
         for (int i = 0; i < 4; i++) {
-            brunt_touch_energy *of = t->of[t->edges[p].node[i]];
-            of[TOUCHED_EDGE].met = of[TOUCHED_EDGE].claims = of[TOUCHED_FACET].claims = 0;
+            brunt_touch_energy *of = t->of[p->node[i]];
+            of[TOUCHED_EDGE].met = NONE_TOUCH, of[TOUCHED_EDGE].claims = of[TOUCHED_FACET].claims = 0;
         }
-    for (int32_t p = 0; p < t->edges_count; p++) t->of[t->edges[p].node[0]][TOUCHED_EDGE].met = 1;
+    for (const touched_edges *p = t->edges; p < end; p++) {
+        brunt_touch_energy *own = &t->of[p->node[0]][TOUCHED_EDGE];
+        const int32_t partner = p->body[1] + 1;
+        const bool first = own->met == NONE_TOUCH, ours = first ? is_of(own, partner) : own->partner == partner;
+        if (first && own->held == 0) own->partner = partner;
+        own->met = ours && own->met != CONTESTED ? TOUCHES : CONTESTED;
+    }
+}
+
+// What node i of edges that touch holds of the other body, where neither edges of this step keep anything nor, of what
+// is held of facets, it is on one. NULL: nothing that could go to where theirs is kept.
+static brunt_touch_energy *left_at(const node_touches *t, const touched_edges *edges, int i, touched what,
+                                   const uint8_t *constraints_of_node) {
+    brunt_touch_energy *left = &t->of[edges->node[i]][what];
+    const bool stays = what == TOUCHED_EDGE ? left->met != NONE_TOUCH : constraints_of_node[edges->node[i]] > 0;
+    if (stays || left->held == 0 || !is_of(left, edges->body[i < 2] + 1)) return NULL;
+    return t->of[edges->node[0]][TOUCHED_EDGE].met == TOUCHES ? left : NULL;
 }
 
 // What is left at the nodes of edges that touch goes to these, in equal shares whatever their order.
@@ -65,11 +84,13 @@ static void give_to_edges(const node_touches *t, const uint8_t *constraints_of_n
     for (int round = 0; round < ROUNDS; round++)
         for (int32_t p = 0; p < t->edges_count; p++)
             for (int k = 0; k < 8; k++) {
-                const int32_t n = t->edges[p].node[k / 2];
-                brunt_touch_energy *left = left_at(t, n, k % 2 ? TOUCHED_FACET : TOUCHED_EDGE, constraints_of_node);
+                const touched_edges *edges = &t->edges[p];
+                brunt_touch_energy *own = &t->of[edges->node[0]][TOUCHED_EDGE];
+                brunt_touch_energy *left =
+                    left_at(t, edges, k / 2, k % 2 ? TOUCHED_FACET : TOUCHED_EDGE, constraints_of_node);
                 if (!left) continue;
                 if (round == CLAIM) left->claims++;
-                if (round == TAKE) t->of[t->edges[p].node[0]][TOUCHED_EDGE].held += left->held / left->claims;
+                if (round == TAKE) own->held += left->held / left->claims, own->partner = edges->body[1] + 1;
                 if (round == CLEAR) left->held = 0;
             }
 }
@@ -83,16 +104,17 @@ int brunt_node_touches_hand_over(node_touches *t, const uint8_t *constraints_of_
     int32_t kept = 0;
     for (int32_t q = 0; q < t->keeper_count; q++) {
         const int32_t n = t->keeper[q];
-        brunt_touch_energy *edge = &t->of[n][TOUCHED_EDGE];
-        if (edge->met) continue;
-        if (constraints_of_node[n]) t->of[n][TOUCHED_FACET].held += edge->held, edge->held = 0;
+        brunt_touch_energy *edge = &t->of[n][TOUCHED_EDGE], *facet = &t->of[n][TOUCHED_FACET];
+        if (edge->met != NONE_TOUCH) continue;
+        if (constraints_of_node[n] && is_of(facet, edge->partner))
+            facet->held += edge->held, facet->partner = edge->partner, edge->held = 0;
         if (edge->held != 0) t->keeper[kept++] = n;
     }
     t->keeper_count = kept;
     for (int32_t p = 0; p < t->edges_count; p++) {
         brunt_touch_energy *own = &t->of[t->edges[p].node[0]][TOUCHED_EDGE];
-        if (own->met == 1 && add_keeper(t, t->edges[p].node[0], error)) return BRUNT_FAILED;
-        own->met = 2; // listed
+        if (own->met != LISTED && add_keeper(t, t->edges[p].node[0], error)) return BRUNT_FAILED;
+        own->met = LISTED;
     }
     return BRUNT_OK;
 }
@@ -128,25 +150,34 @@ double brunt_node_to_facet_held(const brunt_node_to_facet *f, const brunt_contac
     return sum;
 }
 
+// What is held of each, and then of whom it is. Checkpoints of before have the first half alone: it is of anyone.
 int64_t brunt_node_touches_state_count(const brunt_contact_surface *s) {
-    return TOUCHED_COUNT * brunt_surface_slots(s);
+    return 2 * TOUCHED_COUNT * brunt_surface_slots(s);
 }
 
 void brunt_node_touches_state_get(const brunt_node_to_facet *f, const brunt_contact_surface *s, double *out) {
+    const int64_t held = TOUCHED_COUNT * brunt_surface_slots(s);
     memset(out, 0, (size_t)brunt_node_touches_state_count(s) * sizeof *out);
     for (int k = 0; f && f->touches.of && k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
-            for (int what = 0; what < TOUCHED_COUNT; what++)
-                out[TOUCHED_COUNT * brunt_surface_slot(s, k, n) + what] = f->touches.of[n][what].held;
+            for (int what = 0; what < TOUCHED_COUNT; what++) {
+                const brunt_touch_energy *touch = &f->touches.of[n][what];
+                const int64_t at = TOUCHED_COUNT * brunt_surface_slot(s, k, n) + what;
+                out[at] = touch->held, out[held + at] = touch->held != 0 ? touch->partner : 0;
+            }
 }
 
 int brunt_node_touches_state_set(brunt_node_to_facet *f, const brunt_contact_surface *s, const double *in,
-                                 brunt_error *error) {
+                                 int64_t count, brunt_error *error) {
+    const int64_t held = TOUCHED_COUNT * brunt_surface_slots(s);
     if (brunt_node_touches_make(f, s->node_count, error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
-            for (int what = 0; what < TOUCHED_COUNT; what++)
-                f->touches.of[n][what].held = in[TOUCHED_COUNT * brunt_surface_slot(s, k, n) + what];
+            for (int what = 0; what < TOUCHED_COUNT; what++) {
+                const int64_t at = TOUCHED_COUNT * brunt_surface_slot(s, k, n) + what;
+                f->touches.of[n][what] =
+                    (brunt_touch_energy){.held = in[at], .partner = count > held ? (int32_t)in[held + at] : 0};
+            }
     return list_keepers(&f->touches, s->node_count, error);
 }
 

@@ -7,9 +7,9 @@
 
 typedef enum touched { TOUCHED_FACET, TOUCHED_EDGE, TOUCHED_PLANE, TOUCHED_COUNT } touched;
 
-// Two edges that touch: what that takes is kept at node[0], which has most of the crossing.
+// Two edges that touch, of body[0] and of body[1]: what that takes is kept at node[0], which has most of the crossing.
 typedef struct touched_edges {
-    int32_t node[4];
+    int32_t node[4], body[2];
 } touched_edges;
 
 typedef struct node_touches {

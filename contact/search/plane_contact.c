@@ -67,6 +67,7 @@ static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, dou
     constraint->account = &j->boundary->last, constraint->sign = 1, constraint->tag = n,
     constraint->area = brunt_node_to_facet_area(s, n, plane->normal);
     if (!back) constraint->touch = brunt_node_touch(&j->f->touches, n, TOUCHED_PLANE);
+    constraint->partner = -1 - (int32_t)(j->boundary - j->m->boundaries);
     if (back) constraint->area += brunt_node_to_facet_area(s, n + back, plane->normal);
     return brunt_constraints_entry(constraints, dof_node, 1, error) < 0 ? BRUNT_FAILED : BRUNT_OK;
 }

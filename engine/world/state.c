@@ -139,11 +139,12 @@ static void get_search(const brunt_contact *contact, double *to) {
     if (touches_count(contact)) brunt_node_touches_state_get(contact->node_to_facet, &contact->surface, to);
 }
 
-static int set_search(brunt_contact *contact, int mpm_count, const double *from, brunt_error *error) {
+static int set_search(brunt_contact *contact, int mpm_count, const double *from, int64_t count, brunt_error *error) {
     if (brunt_node_to_facet_state_set(&contact->node_to_facet, &contact->surface, mpm_count, from, error))
         return BRUNT_FAILED;
-    from += brunt_node_to_facet_state_count(&contact->surface);
-    return touches_count(contact) ? brunt_node_touches_state_set(contact->node_to_facet, &contact->surface, from, error)
+    const int64_t before = brunt_node_to_facet_state_count(&contact->surface);
+    return touches_count(contact) ? brunt_node_touches_state_set(contact->node_to_facet, &contact->surface,
+                                                                 from + before, count - before, error)
                                   : BRUNT_OK;
 }
 
@@ -168,7 +169,8 @@ static int world_set(brunt_world *world, int block, const double *from, int64_t 
     if (block == NEWTON_BLOCK)
         return brunt_implicit_kept_set(&world->plan, brunt_saved_set(newton_table, NEWTON_ROWS, world, from),
                                        count - brunt_saved_count(newton_table, NEWTON_ROWS), error);
-    if (block == SEARCH_BLOCK && set_search(&world->contact, world->bodies.mpm_count, from, error)) return BRUNT_FAILED;
+    if (block == SEARCH_BLOCK && set_search(&world->contact, world->bodies.mpm_count, from, count, error))
+        return BRUNT_FAILED;
     if (block == 4) brunt_surface_affine_set(&world->contact.surface, from);
     if (block == 0) from = brunt_saved_set(clock_table, CLOCK_ROWS, world, from);
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;
@@ -208,6 +210,7 @@ static int check_set(brunt_world *world, int32_t index, const void *in, int64_t 
     // Of a body that erodes there may be fewer particles by now than in the world as it is; its ids say how many.
     bool fits = count == block.count;
     if (mpm && at.block == 0 && mpm->erodes) fits = count >= 0 && count <= mpm->particles.made;
+    if (!at.body && at.block == SEARCH_BLOCK) fits = fits || count == block.count - touches_count(&world->contact) / 2;
     if (!at.body && at.block == NEWTON_BLOCK)
         fits = brunt_implicit_kept_fits(&world->plan, count - brunt_saved_count(newton_table, NEWTON_ROWS));
     if (!fits)

@@ -1,6 +1,8 @@
 // What touches take comes back at release (contact.touch elastic), through the public interface: bars, walls that stand
 // and move, friction, oblique cubes, a restart in the middle, a body that leaves past a rim, and none of it where a
 // scene does not want it.
+#include "contact/search/node_to_facet_parts.h"
+#include "world/world.h"
 #include "tests/support/hard_world.h"
 
 static brunt_body_def *mesh(brunt_body_def *b, brunt_element_kind kind, double size) {
@@ -245,8 +247,40 @@ START_TEST(restart_while_something_is_held) {
     ck_assert_double_gt(e.contact_held, _i ? 0 : 1e-3 * e.initial);
     world_copy_state(world, other);
     ck_assert_double_eq(world_energy(other).contact_held, e.contact_held);
+    const node_touches *one = &world->contact.node_to_facet->touches, *two = &other->contact.node_to_facet->touches;
+    for (int32_t n = 0; n < world->contact.surface.node_count; n++)
+        for (int what = 0; what < TOUCHED_COUNT; what++) {
+            ck_assert_double_eq(one->of[n][what].held, two->of[n][what].held);
+            if (one->of[n][what].held != 0) ck_assert_int_eq(one->of[n][what].partner, two->of[n][what].partner);
+            if (one->of[n][what].held != 0) ck_assert_int_gt(one->of[n][what].partner, 0);
+        }
     world_steps(world, 100), world_steps(other, 100);
     ck_assert_uint_eq(brunt_world_hash(world), brunt_world_hash(other));
+    brunt_world_destroy(world), brunt_world_destroy(other);
+}
+END_TEST
+
+// States that do not say of whom what is held is: of anyone.
+START_TEST(states_of_before) {
+    brunt_world_def def = oblique_cubes(BRUNT_TET4, 0.75, 1, BRUNT_TOUCH_ELASTIC);
+    brunt_world *world = world_from(&def), *other = world_take(&def);
+    world_until(world, 0.02);
+    int32_t index = 0;
+    while (strcmp(brunt_state_info(world, index).name, "world/contact_search")) index++;
+    const int64_t count = brunt_state_info(world, index).count,
+                  said = brunt_node_touches_state_count(&world->contact.surface) / 2;
+    double *state = brunt_alloc((size_t)count * sizeof *state);
+    brunt_error error;
+    brunt_state_get(world, index, state);
+    ck_assert_int_eq(brunt_state_set(other, index, state, count - said - 1, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_state_set(other, index, state, count - said, &error), BRUNT_OK);
+    other->contact.surface.motion.was_active[0] = other->contact.surface.motion.was_active[1] = true;
+    ck_assert_double_eq(brunt_node_to_facet_held(other->contact.node_to_facet, &other->contact.surface),
+                        world_energy(world).contact_held);
+    for (int32_t n = 0; n < other->contact.surface.node_count; n++)
+        for (int what = 0; what < TOUCHED_COUNT; what++)
+            ck_assert_int_eq(other->contact.node_to_facet->touches.of[n][what].partner, 0);
+    brunt_free(state);
     brunt_world_destroy(world), brunt_world_destroy(other);
 }
 END_TEST
@@ -259,5 +293,6 @@ int main(void) {
     ADD(release_rubs);
     ADD_LOOP(cubes_keep_their_energy, 4);
     ADD_LOOP(restart_while_something_is_held, 8);
+    ADD(states_of_before);
     return suite_main(suite);
 }

@@ -39,9 +39,9 @@ static double sum(kept *k) {
 // A crossing slides along either edge: it is kept at the node that is nearest now, of whichever edge.
 START_TEST(goes_along_an_edge) {
     kept k = keep();
-    step(&k, 1, &(touched_edges){{0, 1, 2, 3}});
+    step(&k, 1, &(touched_edges){{0, 1, 2, 3}, {0, 1}});
     *held(&k, 0, TOUCHED_EDGE) = 8;
-    static const touched_edges next[] = {{{1, 0, 2, 3}}, {{3, 2, 0, 1}}, {{0, 1, 2, 3}}};
+    static const touched_edges next[] = {{{1, 0, 2, 3}, {0, 1}}, {{3, 2, 0, 1}, {1, 0}}, {{0, 1, 2, 3}, {0, 1}}};
     step(&k, 1, &next[_i]);
     ck_assert_double_eq(*held(&k, next[_i].node[0], TOUCHED_EDGE), 8);
     ck_assert_double_eq(sum(&k), 8);
@@ -53,7 +53,8 @@ END_TEST
 START_TEST(is_shared) {
     kept k = keep();
     *held(&k, 1, TOUCHED_EDGE) = 8, *held(&k, 1, TOUCHED_FACET) = 2;
-    static const touched_edges both[2][2] = {{{{0, 1, 2, 3}}, {{4, 1, 5, 3}}}, {{{4, 1, 5, 3}}, {{0, 1, 2, 3}}}};
+    static const touched_edges both[2][2] = {{{{0, 1, 2, 3}, {0, 1}}, {{4, 1, 5, 3}, {0, 1}}},
+                                             {{{4, 1, 5, 3}, {0, 1}}, {{0, 1, 2, 3}, {0, 1}}}};
     step(&k, 2, both[_i]);
     ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 5);
     ck_assert_double_eq(*held(&k, 4, TOUCHED_EDGE), 5);
@@ -62,11 +63,31 @@ START_TEST(is_shared) {
 }
 END_TEST
 
+// What is held of other bodies stays where it is; what goes to the other body's node is of the first.
+START_TEST(is_of_one_body) {
+    kept k = keep();
+    *held(&k, 1, TOUCHED_EDGE) = 8, k.touches.of[1][TOUCHED_EDGE].partner = _i == 0 ? 3 : 2;
+    *held(&k, 2, TOUCHED_FACET) = 2, k.touches.of[2][TOUCHED_FACET].partner = _i == 0 ? 2 : 1;
+    if (_i == 2) *held(&k, 0, TOUCHED_EDGE) = 1, k.touches.of[0][TOUCHED_EDGE].partner = 3;
+    if (_i == 3) // several bodies are at the node
+        step(&k, 2, (touched_edges[]){{{0, 1, 2, 3}, {0, 1}}, {{0, 4, 5, 3}, {0, 2}}});
+    else
+        step(&k, 1, &(touched_edges){{0, 1, 2, 3}, {0, 1}});
+    ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), _i == 1 ? 10 : _i == 2);
+    if (_i == 1) ck_assert_int_eq(k.touches.of[0][TOUCHED_EDGE].partner, 2);
+    ck_assert_double_eq(sum(&k), 10 + (_i == 2));
+    k.constraints_of_node[1] = 1, *held(&k, 1, TOUCHED_FACET) = 1, k.touches.of[1][TOUCHED_FACET].partner = 5;
+    step(&k, 0, NULL);
+    ck_assert_double_eq(*held(&k, 1, TOUCHED_FACET), 1);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
 // Another crossing is at the node where it was kept: it stays there. What is owed goes along as what is held.
 START_TEST(stays_where_others_are) {
     kept k = keep();
     *held(&k, 0, TOUCHED_EDGE) = 8, *held(&k, 1, TOUCHED_EDGE) = -2;
-    step(&k, 2, (touched_edges[]){{{2, 3, 0, 1}}, {{0, 4, 5, 3}}});
+    step(&k, 2, (touched_edges[]){{{2, 3, 0, 1}, {1, 0}}, {{0, 4, 5, 3}, {0, 1}}});
     ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 8);
     ck_assert_double_eq(*held(&k, 2, TOUCHED_EDGE), -2);
     ck_assert_double_eq(sum(&k), 6);
@@ -77,12 +98,12 @@ END_TEST
 // Edges that flatten are features no more: what they hold waits until its node is on a facet, and goes there.
 START_TEST(goes_to_facets) {
     kept k = keep();
-    step(&k, 1, &(touched_edges){{0, 1, 2, 3}});
+    step(&k, 1, &(touched_edges){{0, 1, 2, 3}, {0, 1}});
     *held(&k, 0, TOUCHED_EDGE) = 8, *held(&k, 0, TOUCHED_FACET) = 1;
     step(&k, 0, NULL), step(&k, 0, NULL);
     ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 8);
     k.constraints_of_node[0] = 1;
-    if (_i) step(&k, 1, &(touched_edges){{0, 1, 2, 3}}); // or is met again
+    if (_i) step(&k, 1, &(touched_edges){{0, 1, 2, 3}, {0, 1}}); // or is met again
     ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 8);
     step(&k, 0, NULL);
     ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), 0);
@@ -96,7 +117,7 @@ START_TEST(goes_to_edges) {
     kept k = keep();
     *held(&k, 3, TOUCHED_FACET) = 8, *held(&k, 3, TOUCHED_PLANE) = 1;
     k.constraints_of_node[3] = (uint8_t)_i;
-    step(&k, 1, &(touched_edges){{0, 1, 2, 3}});
+    step(&k, 1, &(touched_edges){{0, 1, 2, 3}, {0, 1}});
     ck_assert_double_eq(*held(&k, 0, TOUCHED_EDGE), _i ? 0 : 8);
     ck_assert_double_eq(*held(&k, 3, TOUCHED_FACET), _i ? 8 : 0);
     ck_assert_double_eq(*held(&k, 3, TOUCHED_PLANE), 1);
@@ -109,6 +130,7 @@ int main(void) {
     TCase *tests = tcase_create("hand_over");
     tcase_add_loop_test(tests, goes_along_an_edge, 0, 3);
     tcase_add_loop_test(tests, is_shared, 0, 2);
+    tcase_add_loop_test(tests, is_of_one_body, 0, 4);
     tcase_add_test(tests, stays_where_others_are);
     tcase_add_loop_test(tests, goes_to_facets, 0, 2);
     tcase_add_loop_test(tests, goes_to_edges, 0, 2);
