@@ -127,7 +127,7 @@ static bool put_run_state(hid_t file, const brunt_checkpoint *c, const char *sce
            brunt_hdf5_put_integer(file, "history_lines", state->history_lines) &&
            brunt_hdf5_put_integer(file, "history_hash", (long long)state->history_hash) &&
            brunt_hdf5_put_integer(file, "mesh_hash", (long long)state->mesh_hash) &&
-           brunt_hdf5_put_integer(file, "run", (long long)brunt_checkpoint_identity(scene_text, state->mesh_hash)) &&
+           brunt_hdf5_put_integer(file, "run", (long long)state->identity) &&
            brunt_hdf5_put_number(file, "time", c->time) &&
            brunt_hdf5_put_number(file, "wall_seconds", state->wall_seconds) &&
            brunt_hdf5_put_number(file, "cpu_seconds", state->cpu_seconds) &&

@@ -21,6 +21,7 @@ typedef struct brunt_run_state {
     int64_t history_lines; // of the history up to here, and
     uint64_t history_hash; // what they are: brunt_history_hash
     uint64_t mesh_hash;    // of the mesh files' contents, which are no part of the scene's text
+    uint64_t identity;     // of what is computed: brunt_checkpoint_identity
 } brunt_run_state;
 
 void brunt_run_state_free(brunt_run_state *state);

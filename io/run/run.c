@@ -248,8 +248,10 @@ static int make_world(run *r, brunt_error *error) {
     r->state.mesh_hash = hash_meshes(scene);
     if (!status) status = brunt_scene_take_values(scene, r->world, error);
     if (!status) status = make_scene_text(r, error);
-    if (!status) brunt_history_identify(r->history, brunt_checkpoint_identity(r->scene_text, r->state.mesh_hash));
-    return status;
+    if (status) return status;
+    r->state.identity = brunt_checkpoint_identity(r->scene_text, r->state.mesh_hash);
+    brunt_history_identify(r->history, r->state.identity);
+    return BRUNT_OK;
 }
 
 // A run goes on as if the step that has changed nothing had not been tried: its picture is none of those that were due.
@@ -263,10 +265,11 @@ static void forget_failure(run *r) {
 
 static int restore(run *r, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH];
-    uint64_t mesh_hash = r->state.mesh_hash;
+    const uint64_t mesh_hash = r->state.mesh_hash, identity = r->state.identity;
     int status = path_in(r, "checkpoint.h5", path, error);
     if (!status) status = brunt_checkpoint_read(path, r->world, r->scene_text, &r->state, error);
     if (status) return status;
+    r->state.identity = identity;
     if (r->state.mesh_hash != mesh_hash)
         return brunt_fail(error, BRUNT_BAD_INPUT, "%s: a mesh file has changed since the checkpoint was written", path);
     r->picture_capacity = sizeof(double) * (size_t)r->state.picture_count;
@@ -330,6 +333,7 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
                              .step_seconds = now.step_seconds,
                              .output_seconds = now.output_seconds,
                              .peak_bytes = brunt_summary_peak(),
+                             .state_hash = brunt_world_hash(r->world),
                              .results = status ? NULL : results};
     brunt_summary_print(&summary, scene, r->world, &r->console);
     brunt_profile profile;

@@ -235,7 +235,7 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     double steps = (double)brunt_world_steps(world), particle_steps = steps * (double)brunt_world_particles(world),
            element_steps = steps * (double)brunt_world_elements(world);
     char hash[24];
-    snprintf(hash, sizeof hash, "0x%016llx", (unsigned long long)brunt_world_hash(world));
+    snprintf(hash, sizeof hash, "0x%016llx", (unsigned long long)s->state_hash);
     json_t *o = json_object();
     set_text(o, "scene", scene->name);
     json_object_set_new(o, "version", json_string(BRUNT_VERSION));
@@ -439,6 +439,6 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_balance(world, console);
     print_links(world, console);
     print_momentum(world, console);
-    brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
+    brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)s->state_hash);
     print_measures(s, scene, console);
 }

@@ -13,6 +13,7 @@ typedef struct brunt_summary {
     double step_seconds;                 // [s] wall time inside time steps: what the rates are made of
     double output_seconds;               // [s] wall time that outputs held the steps up
     double peak_bytes;                   // [bytes] the most memory that the process has had: brunt_summary_peak
+    uint64_t state_hash;                 // of the world: brunt_world_hash
     const brunt_profile *profile;        // of this leg; NULL: none
     const brunt_measure_result *results; // one a measure of the scene; NULL: not evaluated
 } brunt_summary;

@@ -213,6 +213,26 @@ START_TEST(other_builds_are_named) {
 }
 END_TEST
 
+static long long run_of(const char *name) {
+    long long run = 0;
+    hid_t file = H5Fopen(small_path(name), H5F_ACC_RDONLY, H5P_DEFAULT), attribute = H5Aopen(file, "run", H5P_DEFAULT);
+    ck_assert_int_ge(H5Aread(attribute, H5T_NATIVE_LLONG, &run), 0);
+    H5Aclose(attribute);
+    H5Fclose(file);
+    return run;
+}
+
+// Checkpoint and history say of which run they are, in its later legs, too.
+START_TEST(files_name_their_run) {
+    const long long run = run_of("whole/history.h5");
+    ck_assert(run != 0);
+    ck_assert_int_eq(run_of("whole/checkpoint.h5"), run);
+    small_expect("run small.yaml -q -t 1 -o whole --resume --set time.end='30 ms'", 0, NULL);
+    ck_assert_int_eq(run_of("whole/checkpoint.h5"), run);
+    ck_assert_int_eq(run_of("whole/history.h5"), run);
+}
+END_TEST
+
 // A history of another run is not gone on with, whatever its columns are.
 START_TEST(histories_of_another_run) {
     static const char *const others[] = {"--set materials.rubber.E='2 MPa'", "--set bodies.left.velocity='[4, 0]'",
@@ -336,6 +356,7 @@ int main(void) {
     tcase_add_test(tcase, checkpoints);
     tcase_add_test(tcase, numbers_that_no_run_has);
     tcase_add_test(tcase, other_builds_are_named);
+    tcase_add_test(tcase, files_name_their_run);
     tcase_add_test(tcase, histories_of_another_run);
     tcase_add_test(tcase, histories);
     tcase_add_test(tcase, damage_under_a_checksum_that_fits);
