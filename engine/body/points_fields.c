@@ -10,11 +10,18 @@ typedef void derive_fn(brunt_body *body, int64_t slot, double *out);
 
 static double entry(brunt_particles *p, int field, int c, int64_t s) { return (double)brunt_field(p, field)[c][s]; }
 
-static void matrix(brunt_particles *p, int field, int64_t s, double last, double out[9]) {
+static inline void matrix_of(int dim, real *const *entries, int64_t s, double last, double out[9]) {
     memset(out, 0, 9 * sizeof *out);
     out[8] = last;
-    for (int r = 0; r < p->point_dim; r++)
-        for (int c = 0; c < p->point_dim; c++) out[3 * r + c] = entry(p, field, r * p->point_dim + c, s);
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) out[3 * r + c] = (double)entries[r * dim + c][s];
+}
+
+static void matrix(brunt_particles *p, int field, int64_t s, double last, double out[9]) {
+    if (p->point_dim == 3)
+        matrix_of(3, brunt_field(p, field), s, last, out);
+    else
+        matrix_of(2, brunt_field(p, field), s, last, out);
 }
 
 static double jacobian(brunt_particles *p, int64_t s) {
@@ -31,12 +38,14 @@ static void derive_velocity(brunt_body *body, int64_t s, double *out) {
     for (int a = 0; a < 3; a++)
         out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_velocity, a, s) : 0;
 }
-static void derive_stress(brunt_body *body, int64_t s, double *out) {
-    double J = jacobian(&body->particles, s);
+static void stress_at(brunt_body *body, int64_t s, double J, double *out) {
     for (int c = 0; c < 6; c++)
         out[c] = c < BRUNT_SYMMETRIC(body->particles.point_dim)
                      ? entry(&body->particles, BRUNT_FIELD_kirchhoff_stress, c, s) / J
                      : 0;
+}
+static void derive_stress(brunt_body *body, int64_t s, double *out) {
+    stress_at(body, s, jacobian(&body->particles, s), out);
 }
 static void derive_J(brunt_body *body, int64_t s, double *out) { *out = jacobian(&body->particles, s); }
 static void derive_volume(brunt_body *body, int64_t s, double *out) {
@@ -57,9 +66,9 @@ static void derive_shared(const brunt_derived_field *field, brunt_body *body, in
     brunt_point_values at;
     derive_F(body, s, at.F);
     derive_J(body, s, &at.J);
-    derive_stress(body, s, at.stress);
-    derive_volume(body, s, &at.volume);
-    derive_density(body, s, &at.density);
+    stress_at(body, s, at.J, at.stress);
+    at.volume = entry(&body->particles, BRUNT_FIELD_reference_volume, 0, s) * at.J;
+    at.density = (double)body->material.density / at.J;
     field->read(&at, out);
 }
 
