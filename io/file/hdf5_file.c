@@ -190,37 +190,60 @@ int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file,
     return BRUNT_OK;
 }
 
-static bool make_groups(hid_t file, const char *name) {
-    hid_t creation = H5Pcreate(H5P_GROUP_CREATE);
-    bool ok = creation >= 0 && H5Pset_obj_track_times(creation, false) >= 0;
-    for (const char *slash = strchr(name + 1, '/'); slash && ok; slash = strchr(slash + 1, '/')) {
-        char group[256];
-        ok = (size_t)snprintf(group, sizeof group, "%.*s", (int)(slash - name), name) < sizeof group;
-        if (!ok || H5Lexists(file, group, H5P_DEFAULT) > 0) continue;
-        hid_t made = H5Gcreate2(file, group, H5P_DEFAULT, creation, H5P_DEFAULT);
-        ok = made >= 0;
-        if (made >= 0) H5Gclose(made);
+void brunt_hdf5_maker_start(brunt_hdf5_maker *m, hid_t file) {
+    *m = (brunt_hdf5_maker){.file = file, .folder = H5I_INVALID_HID};
+    m->groups = H5Pcreate(H5P_GROUP_CREATE), m->sets = H5Pcreate(H5P_DATASET_CREATE);
+    m->ready = m->groups >= 0 && m->sets >= 0 && H5Pset_obj_track_times(m->groups, false) >= 0 &&
+               H5Pset_fletcher32(m->sets) >= 0 && H5Pset_obj_track_times(m->sets, false) >= 0;
+}
+
+static void leave_folder(brunt_hdf5_maker *m) {
+    if (m->folder >= 0) H5Gclose(m->folder);
+    m->folder = H5I_INVALID_HID;
+}
+
+void brunt_hdf5_maker_end(brunt_hdf5_maker *m) {
+    leave_folder(m);
+    if (m->groups >= 0) H5Pclose(m->groups);
+    if (m->sets >= 0) H5Pclose(m->sets);
+}
+
+// Makes the folders of a name that are not there yet, the last of which is the maker's then.
+static bool enter_folder(brunt_hdf5_maker *m, const char *name, size_t length) {
+    bool ok = length < sizeof m->path;
+    leave_folder(m);
+    for (size_t at = 1; at <= length && ok; at++) {
+        if (name[at] != '/') continue;
+        memcpy(m->path, name, at);
+        m->path[at] = 0;
+        leave_folder(m);
+        m->folder = H5Lexists(m->file, m->path, H5P_DEFAULT) > 0
+                        ? H5Gopen2(m->file, m->path, H5P_DEFAULT)
+                        : H5Gcreate2(m->file, m->path, H5P_DEFAULT, m->groups, H5P_DEFAULT);
+        ok = m->folder >= 0;
     }
-    if (creation >= 0) H5Pclose(creation);
     return ok;
 }
 
-hid_t brunt_hdf5_make(hid_t file, const char *name, hid_t file_type, hsize_t count, hsize_t chunk) {
+hid_t brunt_hdf5_make(brunt_hdf5_maker *m, const char *name, hid_t file_type, hsize_t count, hsize_t chunk) {
     const hsize_t unlimited = H5S_UNLIMITED;
-    hid_t space = H5Screate_simple(1, &count, &unlimited), creation = H5Pcreate(H5P_DATASET_CREATE), set = -1;
-    if (space >= 0 && creation >= 0 && H5Pset_chunk(creation, 1, &chunk) >= 0 && H5Pset_fletcher32(creation) >= 0 &&
-        H5Pset_obj_track_times(creation, false) >= 0 && make_groups(file, name))
-        set = H5Dcreate2(file, name, file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    if (creation >= 0) H5Pclose(creation);
-    if (space >= 0) H5Sclose(space);
+    const size_t folder = (size_t)(strrchr(name, '/') - name);
+    const bool here = folder == 0 || (m->folder >= 0 && strlen(m->path) == folder && !strncmp(m->path, name, folder));
+    if (!m->ready || H5Pset_chunk(m->sets, 1, &chunk) < 0 || (!here && !enter_folder(m, name, folder)))
+        return H5I_INVALID_HID;
+    const hid_t space = H5Screate_simple(1, &count, &unlimited);
+    if (space < 0) return H5I_INVALID_HID;
+    const hid_t set = H5Dcreate2(folder ? m->folder : m->file, name + folder + 1, file_type, space, H5P_DEFAULT,
+                                 m->sets, H5P_DEFAULT);
+    H5Sclose(space);
     return set;
 }
 
-bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
+bool brunt_hdf5_put(brunt_hdf5_maker *m, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
                     const void *values) {
     hsize_t size = H5Tget_size(file_type), chunk = (1u << 20) / (size ? size : 1);
     if (chunk > count) chunk = count ? count : 1;
-    hid_t set = brunt_hdf5_make(file, name, file_type, count, chunk);
+    hid_t set = brunt_hdf5_make(m, name, file_type, count, chunk);
     bool ok = set >= 0 && (count == 0 || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
     if (set >= 0) H5Dclose(set);
     return ok;

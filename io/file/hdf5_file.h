@@ -31,12 +31,22 @@ int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file,
 // Kind of a file by its user block into `kind`; false when it is none of ours.
 bool brunt_hdf5_kind(const char *path, char kind[32], int *format);
 
-// One-dimensional datasets, chunked, with a Fletcher-32 checksum, extendible; `name` may hold folders, which are made.
-// True on success.
-bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
+// Makes the datasets of a file, and stays in the folder of the last one, to which most of the next belong: from the
+// root on each takes as long to find as to make.
+typedef struct brunt_hdf5_maker {
+    hid_t file, folder, groups, sets; // folder: negative, in none; groups, sets: how they are made
+    char path[256];                   // of the folder
+    bool ready;
+} brunt_hdf5_maker;
+void brunt_hdf5_maker_start(brunt_hdf5_maker *maker, hid_t file);
+void brunt_hdf5_maker_end(brunt_hdf5_maker *maker); // before the file is closed
+
+// One-dimensional datasets, chunked, with a Fletcher-32 checksum, extendible; `name` begins with a slash and may hold
+// folders, which are made. True on success.
+bool brunt_hdf5_put(brunt_hdf5_maker *maker, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
                     const void *values);
-// Makes a dataset for `put`'s kind of values, to be written in parts; `name` begins with a slash. Negative on failure.
-hid_t brunt_hdf5_make(hid_t file, const char *name, hid_t file_type, hsize_t count, hsize_t chunk);
+// Makes a dataset for `put`'s kind of values, to be written in parts. Negative on failure.
+hid_t brunt_hdf5_make(brunt_hdf5_maker *maker, const char *name, hid_t file_type, hsize_t count, hsize_t chunk);
 bool brunt_hdf5_write_part(hid_t set, hid_t memory_type, int64_t first, int64_t count, const void *values);
 // A dataset as `put` writes them, of `count` numbers of that class and size; -1 for anything else: what is not there,
 // links to elsewhere, other ranks, types and filters, data outside of the file, or more numbers than the file has room

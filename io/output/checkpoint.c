@@ -101,12 +101,12 @@ void brunt_checkpoint_release(brunt_checkpoint *c) {
 // ---------------------------------------------------------------------------------------------------- writing
 
 // Each block is given back once HDF5 has it: in all there is little more than one copy of the state.
-static int put_state(hid_t file, brunt_checkpoint *c, const char *path, brunt_error *error) {
+static int put_state(brunt_hdf5_maker *maker, brunt_checkpoint *c, const char *path, brunt_error *error) {
     for (int32_t b = 0; b < c->count; b++) {
         taken_block *block = &c->block[b];
         char name[DATASET_NAME];
         snprintf(name, sizeof name, "/state/%s", block->info.name);
-        bool ok = brunt_hdf5_put(file, name, file_type(block->info.type), memory_type(block->info.type),
+        bool ok = brunt_hdf5_put(maker, name, file_type(block->info.type), memory_type(block->info.type),
                                  (hsize_t)block->info.count, block->values);
         brunt_free(block->values);
         block->values = NULL;
@@ -116,8 +116,9 @@ static int put_state(hid_t file, brunt_checkpoint *c, const char *path, brunt_er
     return BRUNT_OK;
 }
 
-static bool put_run_state(hid_t file, const brunt_checkpoint *c, const char *scene_text) {
+static bool put_run_state(brunt_hdf5_maker *maker, const brunt_checkpoint *c, const char *scene_text) {
     const brunt_run_state *state = &c->run;
+    const hid_t file = maker->file;
     return brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
            brunt_hdf5_put_text(file, "precision", BRUNT_REAL_NAME) &&
            brunt_hdf5_put_integer(file, "lanes", BRUNT_LANES) &&
@@ -136,9 +137,9 @@ static bool put_run_state(hid_t file, const brunt_checkpoint *c, const char *sce
            brunt_hdf5_put_integer(file, "failed", state->failed) &&
            brunt_hdf5_put_integer(file, "withdrawn", state->withdrawn) &&
            brunt_hdf5_put_text(file, "reason", state->reason) &&
-           brunt_hdf5_put(file, "/picture_times", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, (hsize_t)state->picture_count,
+           brunt_hdf5_put(maker, "/picture_times", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, (hsize_t)state->picture_count,
                           state->picture_times) &&
-           brunt_hdf5_put(file, "/scene", H5T_STD_U8LE, H5T_NATIVE_UINT8, (hsize_t)strlen(scene_text), scene_text);
+           brunt_hdf5_put(maker, "/scene", H5T_STD_U8LE, H5T_NATIVE_UINT8, (hsize_t)strlen(scene_text), scene_text);
 }
 
 int brunt_checkpoint_put(brunt_checkpoint *c, const char *path, const char *backup, const char *scene_text,
@@ -148,9 +149,12 @@ int brunt_checkpoint_put(brunt_checkpoint *c, const char *path, const char *back
         expected += 4096 + (size_t)c->block[b].info.count * find_type(c->block[b].info.type)->bytes;
     hid_t file = brunt_hdf5_create(expected);
     if (file < 0) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not start the file", path);
-    int status = put_state(file, c, path, error);
-    if (!status && !put_run_state(file, c, scene_text))
+    brunt_hdf5_maker maker;
+    brunt_hdf5_maker_start(&maker, file);
+    int status = put_state(&maker, c, path, error);
+    if (!status && !put_run_state(&maker, c, scene_text))
         status = brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not put the file together", path);
+    brunt_hdf5_maker_end(&maker);
     if (status) {
         H5Fclose(file);
         return status;

@@ -26,8 +26,8 @@ static bool put_texts(const brunt_history *h, hid_t file) {
                                "mean over output.force_window, or since the line before where that is longer");
 }
 
-static hid_t make_column(const brunt_history *h, hid_t file, int32_t c, const char *name, int64_t chunk) {
-    hid_t set = brunt_hdf5_make(file, name, H5T_IEEE_F64LE, (hsize_t)h->rows, (hsize_t)chunk);
+static hid_t make_column(const brunt_history *h, brunt_hdf5_maker *maker, int32_t c, const char *name, int64_t chunk) {
+    hid_t set = brunt_hdf5_make(maker, name, H5T_IEEE_F64LE, (hsize_t)h->rows, (hsize_t)chunk);
     if (set < 0 || brunt_hdf5_put_text(set, "unit", h->columns[c].unit)) return set;
     H5Dclose(set);
     return H5I_INVALID_HID;
@@ -35,14 +35,15 @@ static hid_t make_column(const brunt_history *h, hid_t file, int32_t c, const ch
 
 // Lines [first, first + count), which lie one after the other in `lines`, to their columns. The first of them make the
 // columns, of which a chunk holds as many lines.
-static bool put_lines(const brunt_history *h, hid_t file, int64_t first, int64_t count, const double *lines,
-                      double *values) {
+static bool put_lines(const brunt_history *h, brunt_hdf5_maker *maker, int64_t first, int64_t count,
+                      const double *lines, double *values) {
     bool ok = true;
     for (int32_t c = 0; c < h->column_count && ok; c++) {
         char name[COLUMN_NAME + 1];
         dataset_name(h->columns[c].name, name);
         for (int64_t row = 0; row < count; row++) values[row] = lines[h->column_count * row + c];
-        hid_t set = first ? H5Dopen2(file, name, H5P_DEFAULT) : make_column(h, file, c, name, count ? count : 1);
+        hid_t set =
+            first ? H5Dopen2(maker->file, name, H5P_DEFAULT) : make_column(h, maker, c, name, count ? count : 1);
         ok = set >= 0 && (!count || brunt_hdf5_write_part(set, H5T_NATIVE_DOUBLE, first, count, values));
         if (set >= 0) H5Dclose(set);
     }
@@ -60,6 +61,8 @@ static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_e
     const int64_t block = lines_at_once(h);
     double *lines = brunt_alloc(sizeof *lines * (size_t)(block * (h->column_count + 1)));
     line_reader r = {0};
+    brunt_hdf5_maker maker;
+    brunt_hdf5_maker_start(&maker, file);
     int status = lines ? brunt_history_open_lines(&r, h, brunt_history_lines_path(h), error)
                        : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
     bool ok = status || put_texts(h, file);
@@ -67,10 +70,11 @@ static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_e
         const int64_t count = h->rows - first < block ? h->rows - first : block;
         for (int64_t row = 0; row < count && !status; row++)
             status = brunt_history_next_line(&r, NULL, lines + h->column_count * row, error);
-        ok = status || put_lines(h, file, first, count, lines, lines + block * h->column_count);
+        ok = status || put_lines(h, &maker, first, count, lines, lines + block * h->column_count);
     }
     if (!ok) status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
     brunt_history_close_lines(&r);
+    brunt_hdf5_maker_end(&maker);
     brunt_free(lines);
     return status;
 }
