@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/simd.h"
 #include "io/file/input_file.h"
 #include "base/array.h"
@@ -81,6 +82,8 @@ static bool find_stored(char *path, size_t size) {
 typedef struct reader {
     brunt_machine *machine;
     size_t capacity;
+    int32_t *place; // 1 + a row by the hash of its figure, or behind it where that is taken; 0: none
+    size_t places;  // a power of 2, more than twice as many as rows
     int line;
     bool has_header;
     brunt_error *error;
@@ -123,6 +126,34 @@ static bool same_figure(const brunt_machine_row *a, const brunt_machine_row *b) 
            strcmp(a->name, b->name) == 0 && strcmp(a->figure, b->figure) == 0;
 }
 
+static uint64_t hash_text(uint64_t hash, const char *text) {
+    for (; *text; text++) hash = brunt_hash_add(hash, (uint64_t)(unsigned char)*text);
+    return brunt_hash_add(hash, 0);
+}
+
+// Where the row stands that has this figure, or could.
+static int32_t *place_of(const reader *r, const brunt_machine_row *row) {
+    const uint64_t hash = hash_text(hash_text(hash_text((uint64_t)row->threads, row->kind), row->name), row->figure);
+    size_t at = brunt_hash_add(hash, (uint64_t)(int64_t)fmin(row->units, 1e18)) & (r->places - 1);
+    while (r->place[at] && !same_figure(&r->machine->rows[r->place[at] - 1], row)) at = (at + 1) & (r->places - 1);
+    return &r->place[at];
+}
+
+// Makes space for one more row.
+static bool fits_another(reader *r) {
+    const size_t used = (size_t)r->machine->row_count;
+    if (BRUNT_RESERVE_IN(r->machine->rows, r->capacity, used + 1, used)) return false;
+    if (r->places > 2 * (used + 1)) return true;
+    enum { FIRST = 1024 };
+    const size_t places = r->places ? 2 * r->places : FIRST;
+    int32_t *place = brunt_alloc(places * sizeof *place);
+    if (!place) return false;
+    brunt_free(r->place);
+    r->place = place, r->places = places;
+    for (size_t k = 0; k < used; k++) *place_of(r, &r->machine->rows[k]) = (int32_t)k + 1;
+    return true;
+}
+
 static int read_row(reader *r, char *text) {
     char *field[FIELDS], *rest = text;
     int count = 0;
@@ -145,12 +176,12 @@ static int read_row(reader *r, char *text) {
     if (!status) status = read_number(r, "least", field[7], 0, &row.least);
     if (!status) status = read_count(r, "rounds", field[8], &row.rounds);
     if (status) return status;
-    for (int32_t k = 0; k < r->machine->row_count; k++)
-        if (same_figure(&r->machine->rows[k], &row)) return bad(r, "a figure for the second time:", row.name);
-    const size_t used = (size_t)r->machine->row_count;
-    if (BRUNT_RESERVE_IN(r->machine->rows, r->capacity, used + 1, used))
+    if (!fits_another(r))
         return brunt_fail(r->error, BRUNT_FAILED, "out of memory while reading %.500s", r->machine->path);
+    int32_t *place = place_of(r, &row);
+    if (*place) return bad(r, "a figure for the second time:", row.name);
     r->machine->rows[r->machine->row_count++] = row;
+    *place = r->machine->row_count;
     return BRUNT_OK;
 }
 
@@ -194,6 +225,7 @@ static int read_file(brunt_machine *machine, brunt_error *error) {
     if (!status && !machine->row_count) status = bad(&r, "no figures up to the end of", "the file");
     free(text);
     fclose(in);
+    brunt_free(r.place);
     return status;
 }
 

@@ -147,6 +147,38 @@ START_TEST(bad_rows_are_refused_with_their_line) {
 }
 END_TEST
 
+// Each is another one by its kind, name, units, threads or figure; any of them is known again.
+START_TEST(many_rows) {
+    enum { ROWS = 5000, ROW = 64 };
+    static const char *const kinds[] = {"growth", "elements"}, *const names[] = {"hex8", "tet4", "quad4"},
+                             *const figures[] = {"step", "kick", "drift", "forces"};
+    char *rows = malloc(sizeof head + (size_t)ROWS * ROW), *repeated = malloc(sizeof head + (size_t)ROWS * ROW + ROW);
+    int length = snprintf(rows, sizeof head, "%s", head), start[ROWS];
+    for (int k = 0; k < ROWS; k++) {
+        start[k] = length;
+        length += snprintf(rows + length, ROW, "%s,%s,%d,%d,%s,ns,%d,1,3\n", kinds[k % 2], names[k / 2 % 3], k / 48,
+                           1 + k / 24 % 2, figures[k / 6 % 4], k);
+    }
+    const char *path = small_path("machine.csv");
+    brunt_machine machine;
+    brunt_error error = {0};
+    setenv("BRUNT_MACHINE", path, 1);
+    small_write(path, rows, length);
+    ck_assert_msg(brunt_machine_load(&machine, &error) == BRUNT_OK, "%s", error.message);
+    ck_assert_int_eq(machine.row_count, ROWS);
+    for (int k = 0; k < ROWS; k++) ck_assert_double_eq(machine.rows[k].median, k);
+    brunt_machine_free(&machine);
+    for (int k = 0; k < ROWS; k += 499) {
+        const int size = snprintf(repeated, sizeof head + (size_t)ROWS * ROW + ROW, "%s%.*s", rows,
+                                  (int)strcspn(rows + start[k], "\n"), rows + start[k]);
+        small_write(path, repeated, size);
+        ck_assert_int_eq(brunt_machine_load(&machine, &error), BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, ":5004: a figure for the second time") != NULL, "%s", error.message);
+    }
+    free(rows), free(repeated);
+}
+END_TEST
+
 START_TEST(files_that_are_none) {
     brunt_machine machine;
     brunt_error error = {0};
@@ -211,6 +243,7 @@ int main(void) {
     tcase_add_test(all, a_step_by_what_is_stored);
     tcase_add_test(all, figures_of_the_nearest_threads);
     tcase_add_test(all, bad_rows_are_refused_with_their_line);
+    tcase_add_test(all, many_rows);
     tcase_add_test(all, files_that_are_none);
     tcase_add_test(all, name_of_this_machine);
     tcase_add_test(all, without_a_name_the_stored_one);
