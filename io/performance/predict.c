@@ -14,9 +14,10 @@ enum { PASSES = BRUNT_PREDICTION_PASSES };
 // A world that fails within these cannot be run; one that fails later has a cost until then.
 enum { FIRST_STEPS = 3 };
 
-// What is spent on the world itself, on a rehearsal of a short run, and on all rehearsals at most [s]. In between they
-// take a tenth of what they predict.
-static const double sample_budget = 0.1, least_budget = 0.5, budget_limit = 2.0, deadline = 3.0;
+// What is spent on the world itself, or where that is only a few steps, on a rehearsal of a short run, and on all
+// rehearsals at most [s]. In between they take a tenth of what they predict.
+static const double sample_budget = 0.07, few_steps_budget = 0.5, least_budget = 0.5, budget_limit = 2.0,
+                    deadline = 3.0;
 
 // ------------------------------------------------------------------------------------------ steps that are timed
 
@@ -136,7 +137,8 @@ static int take_sample(const brunt_scene *scene, brunt_world *world, double budg
     const sums before = out->all;
     *out = (sample){.all = before, .first_dt = brunt_world_dt(world)};
     int64_t steps = 0;
-    while (!at_end(world) && (steps < 2 || spent < budget || (steps < 2 * PARTS && spent < 5 * budget)) &&
+    while (!at_end(world) &&
+           (steps < 2 || spent < budget || (steps < 2 * PARTS && spent < fmax(5 * budget, few_steps_budget))) &&
            spent < deadline) {
         int status = take_step(&s, next_stop(world, interval), error);
         if (status && brunt_world_steps(world) <= FIRST_STEPS) return status;
