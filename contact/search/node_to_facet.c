@@ -17,11 +17,28 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
+// All that brunt_node_to_facet_free frees.
 size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
-    return f ? f->bodies.box_capacity + f->bodies.pair_capacity + f->cells.first_capacity + f->cells.face_capacity +
-                   f->cells.x_capacity + f->cache.node_capacity + f->nodes.count_capacity + f->nodes.dof_of_capacity +
-                   f->edges.near_capacity + f->edges.feature_capacity
-             : 0;
+    if (!f) return 0;
+    const near_bodies *b = &f->bodies;
+    const facet_cells *c = &f->cells;
+    const distance_cache *d = &f->cache;
+    const node_candidates *n = &f->nodes;
+    const near_edges *e = &f->edges;
+    const particle_candidates *p = &f->particles;
+    size_t bytes = sizeof *f + b->box_capacity + b->pair_capacity + b->box_of_capacity + b->first_capacity +
+                   b->list_capacity + c->first_capacity + c->face_capacity + c->x_capacity + c->box_capacity +
+                   c->moved_capacity + c->near_capacity + d->node_capacity + d->nearest_capacity + d->spare_capacity +
+                   d->beside_capacity + f->touches.of_capacity + f->touches.spare_capacity + n->count_capacity +
+                   n->candidate_capacity + n->dof_of_capacity + n->first_capacity + n->meets_capacity +
+                   e->near_capacity + e->first_capacity + e->feature_capacity + e->feature_first_capacity +
+                   e->span_capacity + p->run_capacity;
+    bytes += (size_t)n->masters_count * sizeof *n->masters + (size_t)p->list_count * sizeof *p->list;
+    for (int t = 0; t < n->masters_count; t++) bytes += n->masters[t].capacity;
+    for (int t = 0; t < p->list_count; t++) bytes += p->list[t].capacity;
+    for (int k = 0; k <= p->mpm_count && p->dofs; k++)
+        bytes += sizeof *p->dofs + p->dofs[k].of_capacity + p->dofs[k].dof_capacity;
+    return bytes;
 }
 
 int brunt_node_to_facet_begin(brunt_node_to_facet *f, int32_t nodes, brunt_error *error) {
