@@ -128,10 +128,15 @@ static const char sheets[] =
 static char *messages;
 static size_t message_length;
 
-static int parse_file(const char *name, const char *text, const char *const *sets, int set_count, brunt_scene *scene) {
+// Where `messages` are collected, in the place of those before.
+static FILE *open_messages(void) {
     free(messages);
     messages = NULL;
-    FILE *out = open_memstream(&messages, &message_length);
+    return open_memstream(&messages, &message_length);
+}
+
+static int parse_file(const char *name, const char *text, const char *const *sets, int set_count, brunt_scene *scene) {
+    FILE *out = open_messages();
     int status = brunt_scene_parse(text, strlen(text), name, sets, set_count, scene, out);
     fclose(out);
     return status;
@@ -433,8 +438,7 @@ START_TEST(mesh_files) {
     char name[128];
     snprintf(name, sizeof name, "%s/scene.yaml", folder);
     brunt_scene s;
-    free(messages);
-    FILE *out = open_memstream(&messages, &message_length);
+    FILE *out = open_messages();
     int status = brunt_scene_parse(scene, strlen(scene), name, NULL, 0, &s, out);
     fclose(out);
     ck_assert_msg(status == BRUNT_OK, "%s", messages);
@@ -855,7 +859,7 @@ END_TEST
 
 START_TEST(files) {
     brunt_scene s;
-    FILE *out = open_memstream(&messages, &message_length);
+    FILE *out = open_messages();
     ck_assert_int_eq(brunt_scene_read("/nonexistent/scene.yaml", NULL, 0, &s, out), BRUNT_IO_ERROR);
     fclose(out);
     ck_assert_ptr_nonnull(strstr(messages, "/nonexistent/scene.yaml: cannot be read: "));
