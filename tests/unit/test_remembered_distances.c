@@ -167,9 +167,47 @@ START_TEST(who_is_left_out_is_reached_by_nothing) {
 }
 END_TEST
 
+// A small block upon another, and a plate above it that is no part of the search until it can be there in a step,
+// though it is as near as they look. All nodes of the plate are beside the block: those of the block alone see it, and
+// they have looked before.
+static brunt_world *make_late_plate(void) {
+    static const double boxes[3][2][3] = {
+        {{-1, 0, -1}, {1, 2, 1}}, {{-1, -2.03, -1}, {1, -0.03, 1}}, {{-4, 2.75, -4}, {4, 4.75, 4}}};
+    static const char *const names[] = {"block", "below", "plate"};
+    brunt_world_def def = def_begin(3, 1);
+    def_material(&def, "neo-hookean", 1000, 1e7, 0.3);
+    for (int i = 0; i < 3; i++) {
+        brunt_body_def *b = def_box(&def, names[i], boxes[i][0], boxes[i][1]);
+        b->method = BRUNT_FEM, b->element = BRUNT_HEX8, b->size = i == 2 ? 8 : 2;
+        def_velocity(b, 0, i == 2 ? -5 : 0, 0);
+    }
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    return world_take(&def);
+}
+
+START_TEST(who_joins_is_looked_at) {
+    brunt_world *one = make_late_plate(), *other = make_late_plate();
+    const brunt_contact *contact = &one->contact;
+    const int plate = 2; // by name
+    int joined = 0, met = 0;
+    for (int s = 0; s < 2 * STEPS; s++) {
+        forget(other);
+        world_steps(one, 1), world_steps(other, 1);
+        if (!joined && contact->surface.active[plate]) joined = s;
+        met += contact->constraints.constraint_count > 0;
+        compare_velocities(one, other, s);
+    }
+    printf("  the plate joins in step %d, %d steps with constraints\n", joined, met);
+    ck_assert_int_gt(joined, 5);
+    ck_assert_int_gt(met, 10);
+    brunt_world_destroy(one), brunt_world_destroy(other);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("remembered distances");
     ADD_LOOP(what_is_remembered_changes_nothing, CASES);
     ADD_LOOP(who_is_left_out_is_reached_by_nothing, 2);
+    ADD_LOOP(who_joins_is_looked_at, 1);
     return suite_main(suite);
 }
