@@ -1,5 +1,5 @@
 #include "contact/distance/point_facet.h"
-#include "contact/distance/quad.h"
+#include "base/quad.h"
 
 #include <math.h>
 #include <string.h>

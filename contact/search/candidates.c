@@ -1,6 +1,6 @@
 // What a place meets of each body near it: the facets in its cell, the nearest of them, and those beside that bear,
 // too.
-#include "contact/distance/quad.h"
+#include "base/quad.h"
 #include "contact/search/nearest.h"
 
 enum { AHEAD = 6 };                   // facets that are fetched meanwhile

@@ -5,7 +5,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
-#include "contact/distance/quad.h"
+#include "base/quad.h"
 #include "contact/planes/boundary.h"
 #include "grid/bspline.h"
 #include "mpm/particles.h"
