@@ -373,7 +373,8 @@ static bool is_outside(const brunt_contact_surface *s, const brunt_node_to_facet
                        int32_t body) {
     int32_t count;
     const int32_t *list = facets_of(f, l, &count);
-    two_nearest two = {-1, INFINITY, INFINITY, 0, INFINITY};
+    const double range = f->bodies.range * (1 + 1e-6), range2 = range * range; // something of it is within the range
+    two_nearest two = {-1, range2, range2, 0, range2};
     if (is_membrane(s, body)) return false;
     for (int32_t q = 0; q < count; q++) {
         const int32_t face = list[q];
@@ -425,7 +426,7 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     two_nearest two;
     const double close = CLOSE * s->mean_edge, margin = l->particle ? 0 : MARGIN * s->mean_edge;
     out->count = 0;
-    if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
+    if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) || !s->motion.made[guess] ||
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
     if (membranes && guess >= 0 && !l->particle && is_membrane(s, s->face_body[guess]))
@@ -512,7 +513,7 @@ void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_fac
 static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
                            int32_t face, candidate_list *out) {
     const double range = f->bodies.range, margin = MARGIN * s->mean_edge, close = CLOSE * s->mean_edge;
-    if (face < 0 || s->face_body[face] != l->touch[0] ||
+    if (face < 0 || s->face_body[face] != l->touch[0] || !s->motion.made[face] ||
         (l->normal && -dot(s->face_normal[face], l->normal) <= OPPOSED))
         return false;
     nearest one = {.body = l->touch[0], .count = 1, .root = INFINITY, .tied = {{.face = face}}};
@@ -557,7 +558,7 @@ bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_
                                     const double *normal, double least, candidate_list *out) {
     const brunt_contact_surface *s = m->surface;
     const int32_t face = f->cache.nearest[n];
-    if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
+    if (face < 0 || !s->motion.made[face] || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
     const brunt_closest at = closest_on(s, face, s->x[n]);
     nearest one = {.body = s->face_body[face], .count = 1, .square = at.square, .root = INFINITY, .tied = {{at, face}}};
     if (is_membrane(s, one.body) && !(dot(at.normal, at.d) > 0)) return false;

@@ -32,7 +32,7 @@ static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces,
 #define NODE_ARRAYS(X) \
     X(x, 1) X(v, 1) X(old, 1) X(mass, 1) X(inverse, 1) X(normal, 1) X(area, 1) X(face_first, 1) X(output.gap, 1) \
     X(output.impulse, 1) X(output.state, 1) X(motion.near, 1) X(motion.was, 1) X(affine, s->affine) X(membrane.front, s->membrane.front)
-#define FACE_ARRAYS(X) X(face_normal) X(face_centre) X(face_area) X(face_box) X(face_body)
+#define FACE_ARRAYS(X) X(face_normal) X(face_centre) X(face_area) X(face_box) X(face_body) X(motion.made)
 // clang-format on
 
 static int enlarge(void *array, size_t keep, size_t bytes, brunt_error *error) {
@@ -239,6 +239,7 @@ void brunt_surface_free(brunt_contact_surface *s) {
                      s->motion.chunk,
                      s->motion.apart,
                      s->motion.widest,
+                     s->motion.made,
                      s->motion.piece,
                      s->motion.mean,
                      s->motion.speed,

@@ -76,6 +76,7 @@ typedef struct brunt_surface_motion {
         double low[3], high[3], from[3], to[3]; // [m] of the ways of nodes that are near, and of their places
     } * chunk;                                  // of each chunk of nodes
     double *widest;                             // [m] of each chunk of faces, of those that are near
+    uint8_t *made; // of each face of active bodies: it is near something, or has a node that is
     // Bounds of the pieces of bodies that threads look at, BRUNT_SURFACE_PIECE nodes each. Piece p of body k is number
     // node_range[k] / BRUNT_SURFACE_PIECE + k + p: room for all, and no table needed.
     struct brunt_surface_piece {
@@ -111,7 +112,7 @@ typedef struct brunt_contact_surface {
     double *area;         // [m^2] of the surface that is the node's; 0 of detached nodes, which have no faces
     double (*affine)[9];  // [m^2/s] B of the paper's form, kept from step to step; NULL for the others
     int32_t *face_first, *face_of; // faces of node n: face_of[face_first[n] .. face_first[n + 1])
-    // Faces.
+    // Faces. Of active bodies those that are made (motion.made) have all of this, others their bounds alone.
     int32_t face_count;
     int32_t (*face)[4]; // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
     int32_t *face_body;

@@ -157,71 +157,6 @@ static void gather_places(void *context, int64_t begin, int64_t end, int worker)
         if (!s->motion.was_active[k] || n >= s->node_end[k]) take_place(s, n, brunt_fem_node(s->fem[k], s->node[n]));
 }
 
-// Marks the nodes of a face that reaches into the room about what is near its body; several threads may. How wide it
-// is, if it does.
-static inline double mark_near(const brunt_contact_surface *s, int32_t f, const double zone[6]) {
-    const double *box = s->face_box[f];
-    double widest = 0;
-    for (int a = 0; a < 3; a++) {
-        if (box[a] > zone[3 + a] || box[3 + a] < zone[a]) return 0;
-        widest = box[3 + a] - box[a] > widest ? box[3 + a] - box[a] : widest;
-    }
-    for (int c = 0; c < brunt_face_corners(s->face[f]); c++)
-        __atomic_store_n(&s->motion.near[s->face[f][c]], 1, __ATOMIC_RELAXED);
-    return widest;
-}
-
-// The widest of those that are near something [m].
-static double make_faces(brunt_contact_surface *s, int32_t begin, int32_t end) {
-    int k = 0;
-    double widest = 0;
-    for (int32_t f = begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
-        const int32_t *node = s->face[f];
-        if (f + AHEAD < s->face_count)
-            for (int c = 0; c < brunt_face_corners(s->face[f + AHEAD]); c++)
-                __builtin_prefetch(s->x[s->face[f + AHEAD][c]]);
-        const int n = brunt_face_corners(node);
-        double normal[3] = {0}, size = 0;
-        const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n > 2 ? s->x[node[2]] : p,
-                     *t = n > 3 ? s->x[node[3]] : p;
-        double e[3], g[3];
-        for (int a = 0; a < 3; a++) {
-            e[a] = n > 3 ? r[a] - p[a] : q[a] - p[a];
-            g[a] = n > 3 ? t[a] - q[a] : n > 2 ? r[a] - p[a] : 0;
-            s->face_centre[f][a] = (p[a] + q[a] + (n > 2 ? r[a] : 0) + (n > 3 ? t[a] : 0)) / n;
-        }
-        if (n == 2) {
-            normal[0] = e[1], normal[1] = -e[0];
-        } else {
-            for (int a = 0; a < 3; a++) {
-                int i = (a + 1) % 3, l = (a + 2) % 3;
-                normal[a] = 0.5 * (e[i] * g[l] - e[l] * g[i]);
-            }
-        }
-        for (int a = 0; a < 3; a++) size += normal[a] * normal[a];
-        size = sqrt(size);
-        s->face_area[f] = size;
-        for (int a = 0; a < 3; a++) {
-            double low = p[a] < q[a] ? p[a] : q[a], high = p[a] < q[a] ? q[a] : p[a];
-            if (n > 2) low = r[a] < low ? r[a] : low, high = r[a] > high ? r[a] : high;
-            if (n > 3) low = t[a] < low ? t[a] : low, high = t[a] > high ? t[a] : high;
-            s->face_box[f][a] = low, s->face_box[f][3 + a] = high;
-        }
-        for (int a = 0; a < 3; a++) s->face_normal[f][a] = size > 0 ? normal[a] / size : 0;
-        const double wide = mark_near(s, f, s->motion.zone[k]);
-        widest = wide > widest ? wide : widest;
-    }
-    return widest;
-}
-
-static void make_face_chunks(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    brunt_contact_surface *s = ((const job *)context)->surface;
-    for (int64_t c = begin; c < end; c++)
-        s->motion.widest[c] = make_faces(s, (int32_t)c * GRAIN,
-                                         (int32_t)((c + 1) * GRAIN < s->face_count ? (c + 1) * GRAIN : s->face_count));
-}
-
 static void make_normal(brunt_contact_surface *s, int k, int32_t n) {
     double sum[3] = {0}, area = 0, whole = 0, size = 0;
     for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
@@ -293,7 +228,7 @@ void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const doubl
     bool more = s->membrane.front;
     for (int k = 0; k < s->fem_count; k++) more = more || (s->active[k] && !s->motion.was_active[k]);
     if (more) brunt_parallel(threads, s->node_count, GRAIN, gather_places, &j, timer);
-    brunt_parallel(threads, (s->face_count + GRAIN - 1) / GRAIN, 1, make_face_chunks, &j, timer);
+    brunt_surface_make_faces(s, threads, timer);
     if (s->fem_count) brunt_parallel(threads, brunt_surface_chunks(s), 1, gather_chunks, &j, timer);
     brunt_surface_compare_ways(s, threads, timer);
     for (int k = 0; k < s->fem_count; k++) {

@@ -12,6 +12,10 @@ int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t 
 // Owners of nodes and faces, and what follows from the lists of them. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_surface_relate(brunt_contact_surface *s, brunt_error *error);
 
+// --- surface_faces.c
+// Faces of the active bodies, and which of their nodes are near something, by the places of all of them.
+void brunt_surface_make_faces(brunt_contact_surface *s, int threads, brunt_timer *timer);
+
 // --- surface_ways.c
 struct brunt_surface_way brunt_surface_no_way(void);
 int32_t brunt_surface_chunks(const brunt_contact_surface *s); // how many there may be
