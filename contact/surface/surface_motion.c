@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "base/quad.h"
 
 enum { GRAIN = BRUNT_SURFACE_GRAIN, PIECE = BRUNT_SURFACE_PIECE };
 // Nodes of a surface are anywhere among those of their body: what a loop comes to so many later is fetched meanwhile.
@@ -43,33 +44,53 @@ static inline void take_place(brunt_contact_surface *s, int32_t n, const real *a
     s->motion.near[n] = s->face_first[n + 1] == s->face_first[n];
 }
 
-// Bounds of pieces; and the places of what was active a step ago, which most often still is.
+static inline quad quad_of(const real *p) { return (quad){(double)p[0], (double)p[1], (double)p[2], (double)p[3]}; }
+
+// Squares of four vectors.
+static inline quad squares_of(const quad v[4]) {
+    const quad a = __builtin_shufflevector(v[0], v[1], 0, 4, 1, 5), b = __builtin_shufflevector(v[2], v[3], 0, 4, 1, 5),
+               c = __builtin_shufflevector(v[0], v[1], 2, 6, 2, 6), d = __builtin_shufflevector(v[2], v[3], 2, 6, 2, 6),
+               x = __builtin_shufflevector(a, b, 0, 1, 4, 5), y = __builtin_shufflevector(a, b, 2, 3, 6, 7),
+               z = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+    quad square = x * x;
+    square += y * y;
+    square += z * z;
+    return square;
+}
+
+// Bounds of the nodes begin .. end of body k; and their places, if it was active a step ago, as it most often still is.
+static struct brunt_surface_piece bound_nodes(brunt_contact_surface *s, int k, int32_t begin, int32_t end) {
+    const brunt_fem_body *fem = s->fem[k];
+    const double *own = s->motion.frame;
+    const quad frame = {own[0], own[1], own[2]};
+    quad low = quad_set(INFINITY), high = quad_set(-INFINITY), sum = {0}, fastest = {0};
+    for (int32_t four = begin; four < end; four += 4) {
+        quad v[4] = {{0}, {0}, {0}, {0}};
+        for (int i = 0; i < 4 && four + i < end; i++) {
+            const int32_t n = four + i;
+            const real *at = brunt_fem_node(fem, s->node[n]);
+            if (n + AHEAD < end) __builtin_prefetch(brunt_fem_node(fem, s->node[n + AHEAD]));
+            const quad x = quad_of(at), velocity = quad_of(at + BRUNT_FEM_V);
+            low = quad_min(x, low), high = quad_max(x, high);
+            sum += velocity, v[i] = velocity - frame;
+            if (s->motion.was_active[k]) take_place(s, n, at);
+        }
+        fastest = quad_max(squares_of(v), fastest);
+    }
+    struct brunt_surface_piece piece = {.fastest = 0};
+    for (int a = 0; a < 3; a++) piece.low[a] = low[a], piece.high[a] = high[a], piece.sum[a] = sum[a];
+    for (int i = 0; i < 4; i++) piece.fastest = fastest[i] > piece.fastest ? fastest[i] : piece.fastest;
+    return piece;
+}
+
 static void bound_pieces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_contact_surface *s = ((const job *)context)->surface;
     int k = body_of_piece(s, PIECE, (int32_t)begin);
     for (int64_t p = begin; p < end; p++) {
         while (k + 1 < s->fem_count && first_piece(s, k + 1) <= p) k++;
-        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-        double sum[3] = {0}, fastest = 0;
-        const int32_t first = s->node_range[k] + ((int32_t)p - first_piece(s, k)) * PIECE;
-        for (int32_t n = first; n < first + PIECE && n < s->node_end[k]; n++) {
-            const real *at = brunt_fem_node(s->fem[k], s->node[n]);
-            if (n + AHEAD < s->node_end[k]) __builtin_prefetch(brunt_fem_node(s->fem[k], s->node[n + AHEAD]));
-            double square = 0;
-            for (int a = 0; a < 3; a++) {
-                double x = (double)at[a], v = (double)at[BRUNT_FEM_V + a], own = v - s->motion.frame[a];
-                low[a] = x < low[a] ? x : low[a], high[a] = x > high[a] ? x : high[a];
-                sum[a] += v;
-                square += own * own;
-            }
-            fastest = square > fastest ? square : fastest;
-            if (s->motion.was_active[k]) take_place(s, n, at);
-        }
-        struct brunt_surface_piece *piece = &s->motion.piece[p];
-        memcpy(piece->low, low, sizeof low), memcpy(piece->high, high, sizeof high);
-        memcpy(piece->sum, sum, sizeof sum);
-        piece->fastest = fastest;
+        const int32_t first = s->node_range[k] + ((int32_t)p - first_piece(s, k)) * PIECE, last = first + PIECE;
+        s->motion.piece[p] = bound_nodes(s, k, first, last < s->node_end[k] ? last : s->node_end[k]);
     }
 }
 
@@ -157,21 +178,25 @@ static void gather_places(void *context, int64_t begin, int64_t end, int worker)
         if (!s->motion.was_active[k] || n >= s->node_end[k]) take_place(s, n, brunt_fem_node(s->fem[k], s->node[n]));
 }
 
-static void make_normal(brunt_contact_surface *s, int k, int32_t n) {
-    double sum[3] = {0}, area = 0, whole = 0, size = 0;
+static inline void make_normal(brunt_contact_surface *s, int k, int32_t n) {
+    quad sum = {0};
+    double area = 0, whole = 0, size = 0;
     for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
-        int32_t f = s->face_of[q];
-        double share = s->face_area[f] / brunt_face_corners(s->face[f]);
+        const int32_t f = s->face_of[q];
+        const int corners = brunt_face_corners(s->face[f]);
+        const double share = corners == 4 ? 0.25 * s->face_area[f] : s->face_area[f] / corners;
         area += share;
-        whole += brunt_surface_nodal_area(s, f, n);
-        for (int a = 0; a < 3; a++) sum[a] += share * s->face_normal[f][a];
+        if (s->axisymmetric) whole += brunt_surface_nodal_area(s, f, n);
+        sum += quad_set(share) * quad_load(s->face_normal[f]);
     }
     if (s->axisymmetric && s->x[n][0] == 0) sum[0] = 0; // the other side of the axis
     for (int a = 0; a < 3; a++) size += sum[a] * sum[a];
     size = sqrt(size);
-    s->area[n] = whole;
+    s->area[n] = s->axisymmetric ? whole : area;
     const bool eroded = s->renewal.eroded && s->renewal.eroded[s->body[n]] && !s->fem[k]->traits->membrane;
-    for (int a = 0; a < 3; a++) s->normal[n][a] = size > (eroded ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
+    const bool any = size > (eroded ? CLEAR : 1e-9) * area;
+    sum = any ? sum / quad_set(size) : (quad){0};
+    for (int a = 0; a < 3; a++) s->normal[n][a] = sum[a];
 }
 
 static inline void fetch_force(const brunt_fem_body *fem, int32_t node) {
@@ -208,16 +233,26 @@ static void gather_near(const job *j, int k, int32_t begin, int32_t end, struct 
     }
 }
 
+// The nodes of one body in a chunk.
+typedef struct chunk_of_nodes {
+    int body;
+    int32_t begin, end;
+} chunk_of_nodes;
+
+static chunk_of_nodes chunk_at(const brunt_contact_surface *s, int32_t c) {
+    const int k = body_of_piece(s, GRAIN, c);
+    const int32_t first = s->node_range[k] + (c - brunt_surface_chunk(s, k, s->node_range[k])) * GRAIN;
+    return (chunk_of_nodes){k, first, first + GRAIN < s->node_range[k + 1] ? first + GRAIN : s->node_range[k + 1]};
+}
+
 static void gather_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
     const brunt_contact_surface *s = j->surface;
     for (int64_t c = begin; c < end; c++) {
-        const int k = body_of_piece(s, GRAIN, (int32_t)c);
-        const int32_t first = s->node_range[k] + ((int32_t)c - brunt_surface_chunk(s, k, s->node_range[k])) * GRAIN,
-                      last = first + GRAIN < s->node_range[k + 1] ? first + GRAIN : s->node_range[k + 1];
+        const chunk_of_nodes of = chunk_at(s, (int32_t)c);
         struct brunt_surface_way way = brunt_surface_no_way();
-        if (s->active[k]) gather_near(j, k, first, last, &way);
+        if (s->active[of.body]) gather_near(j, of.body, of.begin, of.end, &way);
         s->motion.chunk[c] = way;
     }
 }
@@ -237,21 +272,30 @@ void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const doubl
     }
 }
 
-static void scatter_nodes(void *context, int64_t begin, int64_t end, int worker) {
+static void scatter_near(const brunt_contact_surface *s, int k, int32_t begin, int32_t end) {
+    const brunt_fem_body *fem = s->fem[k];
+    for (int32_t n = begin; n < end; n++) {
+        if (n + AHEAD < end && s->motion.near[n + AHEAD])
+            __builtin_prefetch(brunt_fem_node(fem, s->node[n + AHEAD]), 1);
+        if (!s->motion.near[n]) continue;
+        real *at = brunt_fem_node(fem, s->node[n]);
+        for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
+    }
+}
+
+static void scatter_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_contact_surface *s = ((const job *)context)->surface;
-    int k = 0;
-    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
-        if (n + AHEAD < s->node_end[k]) __builtin_prefetch(brunt_fem_node(s->fem[k], s->node[n + AHEAD]), 1);
-        if (n >= s->node_end[k] || !s->motion.near[n]) continue;
-        real *at = brunt_fem_node(s->fem[k], s->node[n]);
-        for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
+    for (int64_t c = begin; c < end; c++) {
+        const chunk_of_nodes of = chunk_at(s, (int32_t)c);
+        if (s->active[of.body])
+            scatter_near(s, of.body, of.begin, of.end < s->node_end[of.body] ? of.end : s->node_end[of.body]);
     }
 }
 
 void brunt_surface_scatter_velocity(brunt_contact_surface *s, double dt, int threads, brunt_timer *timer) {
     job j = {.surface = s};
-    brunt_parallel(threads, s->node_count, GRAIN, scatter_nodes, &j, timer);
+    if (s->fem_count) brunt_parallel(threads, brunt_surface_chunks(s), 1, scatter_chunks, &j, timer);
     for (int a = 0; a < 3; a++) {
         s->motion.frame[a] = 0;
         for (int k = 0; k < s->fem_count; k++) s->motion.frame[a] += s->motion.mean[k][a] / s->fem_count;
