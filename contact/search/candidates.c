@@ -114,15 +114,25 @@ typedef struct facet_search {
     two_nearest *all; // notes the two nearest of any direction, as far as `margin` beyond the nearest; may be NULL
 } facet_search;
 
-// Whether all that is in a box is further from x than the root of `square`, and so far that rounding does not matter.
-static inline bool beyond(const brunt_contact_surface *s, const double box[6], const double x[3], double square) {
-    const double clear = CLEAR * s->mean_edge;
+// Square of the distance from x to a box.
+static inline double box_square(const double box[6], const double x[3]) {
     double sum = 0;
     for (int a = 0; a < 3; a++) {
         const double below = box[a] - x[a], above = x[a] - box[3 + a], way = below > above ? below : above;
         if (way > 0) sum += way * way;
     }
-    return sum * (1 - 1e-6) > square && sum > clear * clear;
+    return sum;
+}
+
+// Whether all in a box whose distance has the square `bound` is further than the root of `square`, and so far that
+// rounding does not matter.
+static inline bool further(const brunt_contact_surface *s, double bound, double square) {
+    const double clear = CLEAR * s->mean_edge;
+    return bound * (1 - 1e-6) > square && bound > clear * clear;
+}
+
+static inline bool beyond(const brunt_contact_surface *s, const double box[6], const double x[3], double square) {
+    return further(s, box_square(box, x), square);
 }
 
 // Squares of the ways along the axes from x, of which the last number is none, to the box of a facet.
@@ -522,8 +532,19 @@ static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_f
     const double root = tie(s, at->square);
     if (at->square > fmin(close * close, range * range)) return false;
     two_nearest two = {face, at->square, range * range, dot(at->normal, at->d), at->square};
+    double bound[BRUNT_BESIDE]; // of squares of distances
+    int least = -1;
     for (int32_t q = 0; q < l->besides; q++) {
-        if (l->beside[q] == face || !near_box(s->face_box[l->beside[q]], l->x, root + margin)) continue;
+        const double *box = s->face_box[l->beside[q]];
+        const bool other = l->beside[q] != face && near_box(box, l->x, root + margin);
+        bound[q] = other ? box_square(box, l->x) : INFINITY;
+        if (other && (least < 0 || bound[q] < bound[least])) least = q;
+    }
+    // The one that may be the nearest is looked at first: most others are then known to be further.
+    for (int32_t k = -1; least >= 0 && k < l->besides; k++) {
+        const int32_t q = k < 0 ? least : k;
+        if (k == least || bound[q] == INFINITY || (k >= 0 && further(s, bound[q], fmax(two.second, root * root))))
+            continue;
         const double square = brunt_closest_on_face_within(s, l->beside[q], l->x, 0).square;
         if (!(square > root * root)) return false;
         two.second = fmin(two.second, square);
