@@ -1,4 +1,5 @@
 // Facets by cell: a grid of cells, each with the facets within reach of it, made anew when things have moved.
+#include "base/quad.h"
 #include "contact/search/node_to_facet_parts.h"
 
 enum { CHUNK = 1024 };
@@ -145,13 +146,17 @@ typedef struct motion_job {
 
 static void bound_motion(const motion_job *j, int k, int32_t begin, int32_t end, motion_bounds bounds[2]) {
     const brunt_contact_surface *s = j->surface;
+    const uint8_t *near = j->f->cells.near;
+    quad low[2] = {{0}, {0}}, high[2] = {{0}, {0}};
+    for (int i = 0; i < 2; i++)
+        for (int a = 0; a < 3; a++) low[i][a] = bounds[i].low[a], high[i][a] = bounds[i].high[a];
     for (int32_t n = begin > s->node_range[k] ? begin : s->node_range[k]; n < end && n < s->node_range[k + 1]; n++) {
-        motion_bounds *b = &bounds[!j->f->cells.near[n]];
-        for (int a = 0; a < 3; a++) {
-            const double moved = s->x[n][a] - j->f->cells.x[n][a];
-            b->low[a] = moved < b->low[a] ? moved : b->low[a], b->high[a] = moved > b->high[a] ? moved : b->high[a];
-        }
+        const quad moved = quad_load(s->x[n]) - quad_load(j->f->cells.x[n]);
+        const int i = !near[n];
+        low[i] = quad_min(moved, low[i]), high[i] = quad_max(moved, high[i]);
     }
+    for (int i = 0; i < 2; i++)
+        for (int a = 0; a < 3; a++) bounds[i].low[a] = low[i][a], bounds[i].high[a] = high[i][a];
 }
 
 static void look_at_motion(void *context, int64_t begin, int64_t end, int worker) {

@@ -37,18 +37,28 @@ static void look_at_chunks(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
+typedef double pair __attribute__((vector_size(16), aligned(sizeof(double)), may_alias));
+
 static inline void store_three(double *p, quad a) {
-    for (int k = 0; k < 3; k++) p[k] = a[k];
+    *(pair *)p = __builtin_shufflevector(a, a, 0, 1);
+    p[2] = a[2];
 }
 
-// The corners of a face, the last for those that it has not.
-static inline int corners_of(const brunt_contact_surface *s, const int32_t node[4], quad corner[4]) {
-    const int n = brunt_face_corners(node);
-    for (int c = 0; c < 4; c++) corner[c] = quad_load(s->x[node[c < n ? c : n - 1]]);
-    return n;
+#define ALWAYS static inline __attribute__((always_inline))
+
+// So many corners of a face, and the last again for those that it has not.
+ALWAYS void corners_of(const brunt_contact_surface *s, const int32_t node[4], int n, quad corner[4]) {
+    corner[0] = quad_load(s->x[node[0]]), corner[1] = quad_load(s->x[node[1]]);
+    corner[2] = n > 2 ? quad_load(s->x[node[2]]) : corner[1];
+    corner[3] = n > 3 ? quad_load(s->x[node[3]]) : corner[2];
 }
 
-static inline void make_face(brunt_contact_surface *s, int32_t f, const quad corner[4], int n) {
+// Of a triangle, or a segment, the first again for those that it has not.
+static inline void fetch_corners(const brunt_contact_surface *s, const int32_t node[4]) {
+    for (int c = 0; c < 4; c++) __builtin_prefetch(s->x[node[c] < 0 ? node[0] : node[c]]);
+}
+
+ALWAYS void make_face(brunt_contact_surface *s, int32_t f, const quad corner[4], int n) {
     const quad p = corner[0], q = corner[1], r = corner[2], t = corner[3], zero = {0};
     const quad e = n > 3 ? r - p : q - p, g = n > 3 ? t - q : r - p,
                centre = (p + q + (n > 2 ? r : zero) + (n > 3 ? t : zero)) / quad_set(n);
@@ -64,43 +74,52 @@ static inline void make_face(brunt_contact_surface *s, int32_t f, const quad cor
     store_three(s->face_normal[f], size > 0 ? normal / quad_set(size) : zero);
 }
 
-// Bounds; and what reaches into the room about what is near the body is made, and its nodes are marked, which several
-// threads may.
+// Room about what is near a body; the widest face that reaches into it.
+typedef struct near_zone {
+    quad low, high, widest;
+} near_zone;
+
+// Bounds; and what reaches into the zone is made, and its nodes are marked, which several threads may.
+ALWAYS void bound_face(brunt_contact_surface *s, int32_t f, int n, near_zone *zone) {
+    const int32_t *node = s->face[f];
+    quad corner[4];
+    corners_of(s, node, n, corner);
+    const quad low = quad_min(quad_min(corner[2], corner[3]), quad_min(corner[0], corner[1])),
+               high = quad_max(quad_max(corner[2], corner[3]), quad_max(corner[0], corner[1]));
+    store_three(s->face_box[f], low), store_three(s->face_box[f] + 3, high);
+    s->motion.made[f] = !(quad_bits((low > zone->high) | (high < zone->low)) & 7);
+    if (!s->motion.made[f]) return;
+    zone->widest = quad_max(high - low, zone->widest);
+    for (int c = 0; c < n; c++) __atomic_store_n(&s->motion.near[node[c]], 1, __ATOMIC_RELAXED);
+    make_face(s, f, corner, n);
+}
+
 static double bound_faces(brunt_contact_surface *s, int k, int32_t begin, int32_t end) {
-    const double *zone = s->motion.zone[k];
-    const quad from = {zone[0], zone[1], zone[2]}, to = {zone[3], zone[4], zone[5]};
-    double widest = 0;
+    const double *room = s->motion.zone[k];
+    near_zone zone = {{room[0], room[1], room[2]}, {room[3], room[4], room[5]}, {0}};
     for (int32_t f = begin; f < end; f++) {
-        const int32_t *node = s->face[f];
-        if (f + AHEAD < end)
-            for (int c = 0; c < brunt_face_corners(s->face[f + AHEAD]); c++)
-                __builtin_prefetch(s->x[s->face[f + AHEAD][c]]);
-        quad corner[4];
-        const int n = corners_of(s, node, corner);
-        const quad low = quad_min(quad_min(corner[2], corner[3]), quad_min(corner[0], corner[1])),
-                   high = quad_max(quad_max(corner[2], corner[3]), quad_max(corner[0], corner[1]));
-        store_three(s->face_box[f], low), store_three(s->face_box[f] + 3, high);
-        s->motion.made[f] = !(quad_bits((low > to) | (high < from)) & 7);
-        if (!s->motion.made[f]) continue;
-        const quad way = high - low;
-        for (int a = 0; a < 3; a++) widest = way[a] > widest ? way[a] : widest;
-        for (int c = 0; c < n; c++) __atomic_store_n(&s->motion.near[node[c]], 1, __ATOMIC_RELAXED);
-        make_face(s, f, corner, n);
+        if (f + AHEAD < end) fetch_corners(s, s->face[f + AHEAD]);
+        const int n = brunt_face_corners(s->face[f]);
+        if (n == 4)
+            bound_face(s, f, 4, &zone);
+        else
+            bound_face(s, f, n, &zone);
     }
-    return widest;
+    return fmax(fmax(zone.widest[0], zone.widest[1]), zone.widest[2]);
 }
 
 // The other faces of nodes that are near, whose normals and areas they share in.
 static double make_others(brunt_contact_surface *s, int k, int32_t begin, int32_t end) {
     (void)k;
     for (int32_t f = begin; f < end; f++) {
-        const int32_t *node = s->face[f];
         if (s->motion.made[f]) continue;
+        const int32_t *node = s->face[f];
         bool near = false;
         for (int c = 0; c < brunt_face_corners(node); c++) near = near || s->motion.near[node[c]];
         if (!near) continue;
+        const int n = brunt_face_corners(node);
         quad corner[4];
-        const int n = corners_of(s, node, corner);
+        corners_of(s, node, n, corner);
         make_face(s, f, corner, n);
         s->motion.made[f] = 1;
     }
