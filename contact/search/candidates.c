@@ -399,7 +399,8 @@ static bool is_outside(const brunt_contact_surface *s, const brunt_node_to_facet
 // How far all facets but the nearest are, looked for as far as `to`.
 static inline double second_of(const brunt_contact_surface *s, const brunt_node_to_facet *f, const two_nearest *two,
                                double to) {
-    return fmin(fmin(f->bodies.range, sqrt(two->second)), to) * (1 - 1e-8) - TOUCH * s->mean_edge;
+    const double second = sqrt(two->second), range = f->bodies.range < to ? f->bodies.range : to;
+    return (second < range ? second : range) * (1 - 1e-8) - TOUCH * s->mean_edge;
 }
 
 // The bodies whose boxes it is in, and of which no facet that faces it is within the root of `square`. How many.
@@ -519,6 +520,14 @@ void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_fac
     if (count > 0) f->cache.node[n].beyond = beyond;
 }
 
+// One facet alone as the nearest of its body; there is room for many, which is not filled. Its nearest point.
+static inline const brunt_closest *take_one(nearest *one, int32_t face, int32_t body, brunt_closest at) {
+    one->body = body, one->count = 1;
+    one->square = at.square, one->root = INFINITY;
+    one->tied[0] = (tied){at, face};
+    return &one->tied[0].at;
+}
+
 // Where the facet that was the nearest still is, and none of those listed is as near: what find_candidates comes to.
 static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
                            int32_t face, candidate_list *out) {
@@ -526,11 +535,10 @@ static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_f
     if (face < 0 || s->face_body[face] != l->touch[0] || !s->motion.made[face] ||
         (l->normal && -dot(s->face_normal[face], l->normal) <= OPPOSED))
         return false;
-    nearest one = {.body = l->touch[0], .count = 1, .root = INFINITY, .tied = {{.face = face}}};
-    const brunt_closest *at = &one.tied[0].at;
-    one.tied[0].at = brunt_closest_on_face(s, face, l->x), one.square = at->square;
+    nearest one;
+    const brunt_closest *at = take_one(&one, face, l->touch[0], brunt_closest_on_face(s, face, l->x));
     const double root = tie(s, at->square);
-    if (at->square > fmin(close * close, range * range)) return false;
+    if (at->square > close * close || at->square > range * range) return false;
     two_nearest two = {face, at->square, range * range, dot(at->normal, at->d), at->square};
     double bound[BRUNT_BESIDE]; // of squares of distances
     int least = -1;
@@ -543,11 +551,11 @@ static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_f
     // The one that may be the nearest is looked at first: most others are then known to be further.
     for (int32_t k = -1; least >= 0 && k < l->besides; k++) {
         const int32_t q = k < 0 ? least : k;
-        if (k == least || bound[q] == INFINITY || (k >= 0 && further(s, bound[q], fmax(two.second, root * root))))
-            continue;
+        const double known = two.second > root * root ? two.second : root * root;
+        if (k == least || bound[q] == INFINITY || (k >= 0 && further(s, bound[q], known))) continue;
         const double square = brunt_closest_on_face_within(s, l->beside[q], l->x, 0).square;
         if (!(square > root * root)) return false;
-        two.second = fmin(two.second, square);
+        two.second = square < two.second ? square : two.second;
     }
     const bool outside = is_before(s, &two);
     out->count =
@@ -560,16 +568,15 @@ static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_f
 
 // What is found among the facets that were listed, where no others can have come so near as to change it: then it is
 // what the cells would give, to the last bit.
-bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
-                            int32_t n, candidate_list *out) {
+bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, search_query *l, int32_t n,
+                            candidate_list *out) {
     const brunt_contact_surface *s = m->surface;
     const double beyond = f->cache.node[n].beyond;
     if (!(beyond > 0) || l->touches != 1 || s->face_body[f->cache.beside[n][0]] != l->touch[0]) return false;
-    search_query among = *l;
-    among.beside = f->cache.beside[n], among.besides = 0;
-    while (among.besides < BRUNT_BESIDE && among.beside[among.besides] >= 0) among.besides++;
-    if (!find_one_among(s, f, &among, f->cache.nearest[n], out))
-        find_candidates(m, f, &among, f->cache.nearest[n], false, out);
+    l->beside = f->cache.beside[n], l->besides = 0;
+    while (l->besides < BRUNT_BESIDE && l->beside[l->besides] >= 0) l->besides++;
+    if (!find_one_among(s, f, l, f->cache.nearest[n], out)) find_candidates(m, f, l, f->cache.nearest[n], false, out);
+    l->beside = NULL;
     return out->reach < beyond;
 }
 
@@ -580,10 +587,10 @@ bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_
     const brunt_contact_surface *s = m->surface;
     const int32_t face = f->cache.nearest[n];
     if (face < 0 || !s->motion.made[face] || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
-    const brunt_closest at = closest_on(s, face, s->x[n]);
-    nearest one = {.body = s->face_body[face], .count = 1, .square = at.square, .root = INFINITY, .tied = {{at, face}}};
-    if (is_membrane(s, one.body) && !(dot(at.normal, at.d) > 0)) return false;
-    const double square = at.square, close = CLOSE * s->mean_edge;
+    nearest one;
+    const brunt_closest *at = take_one(&one, face, s->face_body[face], closest_on(s, face, s->x[n]));
+    if (is_membrane(s, one.body) && !(dot(at->normal, at->d) > 0)) return false;
+    const double square = at->square, close = CLOSE * s->mean_edge;
     if (square >= least * least || square > close * close || square > f->bodies.range * f->bodies.range) return false;
     out->count = brunt_nearest_opposed(s, &one, normal, &out->candidate[0]) ? 1 : 0;
     if (s->membrane.side) thicken(s, s->membrane.side[s->body[n]].half, out);

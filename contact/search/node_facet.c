@@ -79,6 +79,18 @@ static facet_candidate *node_candidate_of(const brunt_node_to_facet *f, const br
     return &f->nodes.candidate[(int64_t)q * s->node_count + n];
 }
 
+static inline double least_of(double a, double b) { return b < a ? b : a; }
+
+// A query from a node; its lists of bodies, which are long, stay as they are until they are made.
+static inline void begin_query(search_query *l, int32_t box, int32_t body, const double *x, const double *normal) {
+    l->box = box, l->body = body, l->x = x, l->normal = normal;
+    l->particle = l->membrane = false;
+    l->bounds = NULL, l->beside = l->patch = NULL;
+    l->cell = BRUNT_NONE;
+    l->besides = l->touches = l->enters = l->patch_count = 0;
+    l->half = l->shallow = 0;
+}
+
 static void find_node_candidates(const search_job *j, int k, int32_t n, int worker) {
     const brunt_contact_context *m = j->m;
     brunt_node_to_facet *f = j->f;
@@ -88,7 +100,7 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
     bool faces = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
     node_distance *cached = &f->cache.node[n];
     const double apart = s->motion.apart[brunt_surface_chunk(s, k, n) / s->motion.group],
-                 far = fmin(f->bodies.range, s->motion.seen), since = cached->since += apart;
+                 far = least_of(f->bodies.range, s->motion.seen), since = cached->since += apart;
     cached->beyond -= apart;
     if (cached->distance - since > f->bodies.travel) return;
     if (!s->motion.near[n]) {
@@ -99,8 +111,8 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         return; // a detached nodes has one side
     if (!(since < cached->second &&
           brunt_candidates_still_nearest(m, f, n, faces ? normal : NULL, cached->second - since, found))) {
-        search_query l = {
-            .box = f->bodies.box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
+        search_query l;
+        begin_query(&l, f->bodies.box_of[k], s->body[n], s->x[n], faces ? normal : NULL);
         if (s->membrane.side) look_at_membranes(s, n, &l);
         cached->since = 0, cached->distance = far, cached->second = 0;
         if (!brunt_candidates_bodies(f, &l) || (l.cell = brunt_candidates_cell(f, l.x)) < 0) {
@@ -111,7 +123,7 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
             brunt_candidates_find(m, f, &l, f->cache.nearest[n], found);
             if (found->second < BESIDE * s->mean_edge) brunt_candidates_remember(m, f, &l, n);
         }
-        cached->distance = fmin(found->distance, far), cached->second = fmin(found->second, far);
+        cached->distance = least_of(found->distance, far), cached->second = least_of(found->second, far);
         if (l.touches == BRUNT_MAX_NEAR)
             cached->distance = cached->second = 0; // there may be more bodies than were looked at
         if (found->count) f->cache.nearest[n] = found->candidate[0].face;
@@ -120,7 +132,7 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
     for (int32_t q = 0; q < found->count; q++) {
         facet_candidate *h = &found->candidate[q];
         if (h->gap > f->bodies.travel) continue;
-        s->output.gap[n] = fmin(s->output.gap[n], h->gap);
+        s->output.gap[n] = least_of(s->output.gap[n], h->gap);
         brunt_corners under;
         brunt_node_to_facet_corners(s, h, s->x[n], &under);
         const double approach = brunt_node_to_facet_approach(&under, h->n, s->v[n], s->v);

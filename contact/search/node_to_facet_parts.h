@@ -66,8 +66,8 @@ void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_f
 // hangs on others, too.
 void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_facet *f, const search_query *l,
                                int32_t n);
-bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
-                            int32_t n, candidate_list *out);
+bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, search_query *l, int32_t n,
+                            candidate_list *out);
 // The same of a particle, for which l->bounds are made.
 void brunt_candidates_find_of_particle(const brunt_contact_context *m, const brunt_node_to_facet *f, search_query *l,
                                        candidate_list *out);
