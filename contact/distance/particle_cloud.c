@@ -105,56 +105,74 @@ typedef struct farthest {
     doubles_mask where;
 } farthest;
 
-// Looks at the particles from number i of the cloud on, of which `left` are together: x . n, plus sqrt(n . B n) where
-// there is B (else NULL), their reach.
-BRUNT_INLINE void look_from(const brunt_cloud *cloud, int64_t i, int64_t left, const double *b, const double n[3],
-                            const double nn[6], farthest *of) {
+// How far the centres of the particles from number i of the cloud on go, x . n, and what they reach beyond it, sqrt(n .
+// B n).
+BRUNT_INLINE doubles go_along(const brunt_cloud *cloud, int64_t i, const double n[3]) {
     const size_t stride = cloud->stride;
     const double *x = cloud->data + i;
-    doubles along = doubles_load(x) * n[0] + doubles_load(x + stride) * n[1] + doubles_load(x + 2 * stride) * n[2];
-    if (b) {
-        doubles square = {0};
-        for (int r = 0; r < 6; r++) square += nn[r] * doubles_load(b + (size_t)r * cloud->b_stride);
-        along += doubles_sqrt(doubles_max(square, (doubles){0}));
-    }
-    const doubles_mask lane = doubles_lane(), more = (along > of->most) & (lane < left);
-    of->where = doubles_mask_select(more, lane + i, of->where);
+    return doubles_load(x) * n[0] + doubles_load(x + stride) * n[1] + doubles_load(x + 2 * stride) * n[2];
+}
+BRUNT_INLINE doubles beyond_along(const double *b, size_t stride, const double nn[6]) {
+    doubles square = {0};
+    for (size_t r = 0; r < 6; r++) square += nn[r] * doubles_load(b + r * stride);
+    return doubles_sqrt(doubles_max(square, (doubles){0}));
+}
+
+// `more`: which of them count.
+BRUNT_INLINE void compare(doubles along, doubles_mask more, doubles_mask at, farthest *of) {
+    more &= along > of->most;
+    of->where = doubles_mask_select(more, at, of->where);
     of->most = doubles_select(more, along, of->most);
 }
 
 // The first of those that one and two have found that goes farthest.
 BRUNT_INLINE double farther(const farthest *one, const farthest *two, int *which) {
-    const doubles most = doubles_max(one->most, two->most);
-    double greatest = -INFINITY;
-    for (int l = 0; l < BRUNT_DOUBLES; l++) greatest = most[l] > greatest ? most[l] : greatest;
+    const double greatest = doubles_greatest(doubles_max(one->most, two->most));
     const doubles_mask far = doubles_set_mask(INT32_MAX),
                        first = doubles_mask_select(one->most == greatest, one->where, far),
-                       second = doubles_mask_select(two->most == greatest, two->where, far),
-                       least = doubles_mask_select(first < second, first, second);
-    int64_t at = INT32_MAX;
-    for (int l = 0; l < BRUNT_DOUBLES; l++) at = least[l] < at ? least[l] : at;
-    *which = (int)at;
+                       second = doubles_mask_select(two->most == greatest, two->where, far);
+    *which = (int)doubles_mask_least(doubles_mask_select(first < second, first, second));
     return greatest;
 }
 
 // Two registers in turn, neither of which waits for the other.
-double brunt_cloud_extent(const brunt_cloud *cloud, bool reach, const double n[3], int *which) {
+static double centres_extent(const brunt_cloud *cloud, const double n[3], int *which) {
+    farthest one = {doubles_set(-INFINITY), doubles_set_mask(INT32_MAX)}, two = one;
+    const doubles_mask all = doubles_set_mask(-1);
+    const int64_t end = cloud->count;
+    int64_t i = 0;
+    doubles_mask at = doubles_lane();
+    for (; i + 2 * BRUNT_DOUBLES <= end; i += 2 * BRUNT_DOUBLES, at += 2 * BRUNT_DOUBLES) {
+        compare(go_along(cloud, i, n), all, at, &one);
+        compare(go_along(cloud, i + BRUNT_DOUBLES, n), all, at + BRUNT_DOUBLES, &two);
+    }
+    for (; i < end; i += BRUNT_DOUBLES, at += BRUNT_DOUBLES) compare(go_along(cloud, i, n), at < end, at, &one);
+    return farther(&one, &two, which);
+}
+
+static double reaches_extent(const brunt_cloud *cloud, const double n[3], int *which) {
     const double nn[6] = {n[0] * n[0], n[1] * n[1], n[2] * n[2], 2 * n[1] * n[2], 2 * n[0] * n[2], 2 * n[0] * n[1]};
     farthest one = {doubles_set(-INFINITY), doubles_set_mask(INT32_MAX)}, two = one;
-    for (int64_t i = 0; i < cloud->count && !reach; i += 2 * BRUNT_DOUBLES) {
-        look_from(cloud, i, cloud->count - i, NULL, n, nn, &one);
-        look_from(cloud, i + BRUNT_DOUBLES, cloud->count - i - BRUNT_DOUBLES, NULL, n, nn, &two);
-    }
-    for (int q = 0; q < cloud->runs && reach; q++) {
+    const doubles_mask lane = doubles_lane();
+    const size_t stride = cloud->b_stride;
+    for (int q = 0; q < cloud->runs; q++) {
         const double *b = cloud->b + cloud->run[q].first;
         const int64_t end = cloud->run[q + 1].from;
-        for (int64_t i = cloud->run[q].from; i < end; i += 2 * BRUNT_DOUBLES, b += 2 * BRUNT_DOUBLES) {
-            look_from(cloud, i, end - i, b, n, nn, &one);
+        int64_t i = cloud->run[q].from;
+        for (doubles_mask at = lane + i; i < end; i += 2 * BRUNT_DOUBLES, b += 2 * BRUNT_DOUBLES) {
+            compare(go_along(cloud, i, n) + beyond_along(b, stride, nn), at < end, at, &one);
+            at += BRUNT_DOUBLES;
             if (i + BRUNT_DOUBLES < end)
-                look_from(cloud, i + BRUNT_DOUBLES, end - i - BRUNT_DOUBLES, b + BRUNT_DOUBLES, n, nn, &two);
+                compare(go_along(cloud, i + BRUNT_DOUBLES, n) + beyond_along(b + BRUNT_DOUBLES, stride, nn), at < end,
+                        at, &two);
+            at += BRUNT_DOUBLES;
         }
     }
     return farther(&one, &two, which);
+}
+
+double brunt_cloud_extent(const brunt_cloud *cloud, bool reach, const double n[3], int *which) {
+    return reach ? reaches_extent(cloud, n, which) : centres_extent(cloud, n, which);
 }
 
 void brunt_cloud_end(const brunt_cloud *cloud, int i, bool reach, const double n[3], double end[3]) {

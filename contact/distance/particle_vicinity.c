@@ -151,18 +151,18 @@ static void make_column(brunt_vicinity *v, const int column[3], int32_t start) {
     }
 }
 
-// Copies a row, and what comes behind it up to whole registers, less `at`.
-BRUNT_INLINE void copy_row(const double *from, int count, double at, double *to) {
-    for (int i = 0; i < count; i += BRUNT_DOUBLES) doubles_store(to + i, doubles_load(from + i) - at);
-}
-
-// Places and volumes of a run; B stays where it is.
-static void copy_run(const brunt_vicinity *v, const brunt_run run[2], const double at[3], brunt_cloud *cloud) {
+// Places, less `at`, and volumes of a run, and what comes behind it up to whole registers; B stays where it is.
+static void copy_run(const brunt_vicinity *v, const brunt_run run[2], const double at[3], const brunt_cloud *cloud) {
     const int count = run[1].from - run[0].from;
-    const double *from = v->data + run[0].first;
-    double *to = cloud->data + run[0].from;
-    for (size_t r = 0; r < 3; r++) copy_row(from + r * v->stride, count, at[r], to + r * cloud->stride);
-    copy_row(from + BRUNT_ROW_VOLUME * v->stride, count, 0, to + BRUNT_ROW_VOLUME * cloud->stride);
+    const size_t there = v->stride, here = cloud->stride;
+    const double *restrict x = v->data + run[0].first, *restrict volume = x + BRUNT_ROW_VOLUME * there;
+    double *restrict to = cloud->data + run[0].from, *restrict to_volume = to + BRUNT_ROW_VOLUME * here;
+    for (int i = 0; i < count; i += BRUNT_DOUBLES) {
+        doubles_store(to + i, doubles_load(x + i) - at[0]);
+        doubles_store(to + here + i, doubles_load(x + there + i) - at[1]);
+        doubles_store(to + 2 * here + i, doubles_load(x + 2 * there + i) - at[2]);
+        doubles_store(to_volume + i, doubles_load(volume + i));
+    }
 }
 
 int brunt_vicinity_look(brunt_vicinity *v, int node, brunt_cloud *cloud, brunt_error *error) {

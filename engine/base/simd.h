@@ -137,6 +137,22 @@ BRUNT_INLINE doubles_mask doubles_mask_select(doubles_mask m, doubles_mask a, do
 }
 BRUNT_INLINE doubles_mask doubles_set_mask(int64_t a) { return a - (doubles_mask){0}; }
 
+// The greatest and the least over the lanes, by halves: none waits for all those before it.
+BRUNT_INLINE double doubles_greatest(doubles a) {
+    double most[BRUNT_DOUBLES];
+    doubles_store(most, a);
+    for (int w = BRUNT_DOUBLES / 2; w > 0; w /= 2)
+        for (int l = 0; l < w; l++) most[l] = most[l + w] > most[l] ? most[l + w] : most[l];
+    return most[0];
+}
+BRUNT_INLINE int64_t doubles_mask_least(doubles_mask a) {
+    int64_t least[BRUNT_DOUBLES];
+    memcpy(least, &a, sizeof a);
+    for (int w = BRUNT_DOUBLES / 2; w > 0; w /= 2)
+        for (int l = 0; l < w; l++) least[l] = least[l + w] < least[l] ? least[l + w] : least[l];
+    return least[0];
+}
+
 // Of reals.
 BRUNT_INLINE doubles doubles_of(const real *p) {
 #ifdef BRUNT_FLOAT
