@@ -142,6 +142,8 @@ START_TEST(faces_near_nothing_are_not_made) {
         met += one->contact.constraints.constraint_count;
         for (int32_t f = 0; f < wrong->face_count && one->contact.constraints.constraint_count; f++)
             faces++, made += !isnan(wrong->face_area[f]);
+        for (int32_t n = 0; n < wrong->node_count && one->contact.constraints.constraint_count; n++)
+            ck_assert(!wrong->motion.near[n] || wrong->area[n] == one->contact.surface.area[n]);
     }
     printf("  case %d: %lld of %lld faces made, %lld constraints\n", _i, (long long)made, (long long)faces,
            (long long)met);
