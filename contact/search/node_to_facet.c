@@ -29,10 +29,10 @@ size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
     size_t bytes = sizeof *f + b->box_capacity + b->pair_capacity + b->box_of_capacity + b->first_capacity +
                    b->list_capacity + c->first_capacity + c->face_capacity + c->x_capacity + c->box_capacity +
                    c->moved_capacity + c->near_capacity + d->node_capacity + d->nearest_capacity + d->spare_capacity +
-                   d->beside_capacity + f->touches.of_capacity + f->touches.spare_capacity + n->count_capacity +
-                   n->candidate_capacity + n->dof_of_capacity + n->first_capacity + n->meets_capacity +
-                   e->near_capacity + e->first_capacity + e->feature_capacity + e->feature_first_capacity +
-                   e->span_capacity + p->run_capacity;
+                   d->beside_capacity + f->touches.of_capacity + f->touches.spare_capacity + f->touches.edges_capacity +
+                   f->touches.keeper_capacity + n->count_capacity + n->candidate_capacity + n->dof_of_capacity +
+                   n->first_capacity + n->meets_capacity + e->near_capacity + e->first_capacity + e->feature_capacity +
+                   e->feature_first_capacity + e->span_capacity + p->run_capacity;
     bytes += (size_t)n->masters_count * sizeof *n->masters + (size_t)p->list_count * sizeof *p->list;
     for (int t = 0; t < n->masters_count; t++) bytes += n->masters[t].capacity;
     for (int t = 0; t < p->list_count; t++) bytes += p->list[t].capacity;
