@@ -14,7 +14,7 @@
 #include "contact/planes/boundary.h"
 #include "contact/planes/symmetry.h"
 
-#define BRUNT_LEAP 0.1     // mean edges: how far a node may come in a step and be thrown back
+#define BRUNT_LEAP 0.25    // mean edges: how far a node may come in a step and be thrown back: as far as is searched
 #define BRUNT_SHALLOW 0.02 // mean edges: depths that may be pushed out against a load
 
 // Marks in surface->active which bodies have another one, or a boundary (planes with condition separate and

@@ -236,6 +236,22 @@ START_TEST(cubes_keep_their_energy) {
 }
 END_TEST
 
+// At a third of the speed of waves and the longest steps nodes come by a tenth of an edge and more in one.
+START_TEST(longest_steps_give_back_as_much) {
+    brunt_world_def def = oblique_cubes(_i ? BRUNT_HEX8 : BRUNT_TET4, 0.5, 1, BRUNT_TOUCH_ELASTIC);
+    def.step = 0, def.cfl = 0.9;
+    brunt_world *world = world_take(&def);
+    world_until(world, 0.15);
+    const brunt_energy e = world_energy(world);
+    printf("  %lld steps: contact took %.1e of the energy\n", (long long)brunt_world_steps(world),
+           e.contact / e.initial);
+    ck_assert_int_lt(brunt_world_steps(world), 300);
+    ck_assert_double_ge(e.contact, 0);
+    ck_assert_double_lt(e.contact, 1e-3 * e.initial);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // In the middle of it, where something is held: from a saved state the same bits. Without what is held they are others.
 // Later some is held at nodes of edges that touch no more.
 START_TEST(restart_while_something_is_held) {
@@ -292,6 +308,7 @@ int main(void) {
     ADD(held_and_heavy_are_walls);
     ADD(release_rubs);
     ADD_LOOP(cubes_keep_their_energy, 4);
+    ADD_LOOP(longest_steps_give_back_as_much, 2);
     ADD_LOOP(restart_while_something_is_held, 8);
     ADD(states_of_before);
     return suite_main(suite);
