@@ -10,6 +10,7 @@ typedef struct fan {
     double x[NODES][3], normal[FACES][3], centre[FACES][3], box[FACES][6], area[FACES];
     int32_t face[FACES][4], body[FACES], list[FACES], first[2], nearest[1], beside[1][BRUNT_BESIDE], triangles;
     node_distance node[1];
+    uint8_t made[FACES];
     brunt_contact_surface surface;
     brunt_node_to_facet f;
 } fan;
@@ -35,6 +36,7 @@ static void add_triangle(fan *o, int32_t a, int32_t b, int32_t c) {
 // About the origin, up and down; the plate is some way above, and looks down.
 static void make(fan *o, uint64_t *some) {
     *o = (fan){.triangles = 3 + draw_whole(some, FAN - 2)};
+    memset(o->made, 1, sizeof o->made);
     const double turn = draw(some), height = draw_between(some, 0.55, 0.9);
     for (int k = 0; k < o->triangles; k++) {
         const double angle = 2 * PI * (k + turn) / o->triangles;
@@ -58,7 +60,7 @@ static void make(fan *o, uint64_t *some) {
                                          .face_area = o->area,
                                          .face_box = o->box,
                                          .mean_edge = 1,
-                                         .motion.seen = 0.5};
+                                         .motion = {.seen = 0.5, .made = o->made}};
     o->f.cells.first = o->first, o->f.cells.face = o->list, o->f.cells.range = 0.5, o->f.bodies.range = 0.4;
     o->f.cache.node = o->node, o->f.cache.nearest = o->nearest, o->f.cache.beside = o->beside;
 }
