@@ -2,7 +2,9 @@
 
 #include "contact/search/node_to_facet_parts.h"
 
-static const double FAR = 0.5; // mean edges: beyond, a node has left what it touched
+// Mean edges: beyond, a node has left what it touched. Where less is searched it keeps what it holds until the bodies
+// part: lost at 0.2 edges it cost hexahedra 0.1 to 0.3 % of their energy, as nodes that leave come back.
+static const double FAR = 0.5;
 
 void brunt_node_touches_free(node_touches *t) {
     brunt_free(t->of);

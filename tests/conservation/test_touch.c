@@ -123,6 +123,28 @@ static thrown throw_at(const double n[2], double v, double slide, double wall, d
     return out;
 }
 
+// What is held of a plane says which: the second of two.
+START_TEST(walls_are_told_apart) {
+    brunt_world_def def = begin(2, 0, BRUNT_TOUCH_ELASTIC);
+    def_material(&def, "linear-elastic", 1, 1, 0);
+    def_velocity(mesh(def_box(&def, "block", XYZ(-0.5, 0.01, 0), XYZ(0.5, 1.01, 0)), BRUNT_QUAD4, 0.1), 0, -0.01, 0);
+    def_plane(&def, XYZ(0, 9, 0), XYZ(0, -1, 0), BRUNT_SEPARATE, 0);
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    brunt_world *world = world_take(&def);
+    world_until(world, 2);
+    const node_touches *touches = &world->contact.node_to_facet->touches;
+    int holding = 0;
+    for (int32_t n = 0; n < world->contact.surface.node_count; n++) {
+        const brunt_touch_energy *touch = &touches->of[n][TOUCHED_PLANE];
+        if (touch->held == 0) continue;
+        holding++;
+        ck_assert_int_eq(touch->partner, -2);
+    }
+    ck_assert_int_eq(holding, 11);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // The block comes, or the wall does, from any side: what is lost is nothing, and the block is as fast to the wall.
 START_TEST(walls_that_stand_and_move) {
     const double turns[] = {90, 0, 37, 180, -90}, angle = turns[_i] * PI / 180, n[2] = {cos(angle), sin(angle)};
@@ -305,6 +327,7 @@ int main(void) {
     Suite *suite = suite_create("touch");
     ADD_LOOP(bars_give_on_what_they_have, 7);
     ADD_LOOP(walls_that_stand_and_move, 5);
+    ADD(walls_are_told_apart);
     ADD(held_and_heavy_are_walls);
     ADD(release_rubs);
     ADD_LOOP(cubes_keep_their_energy, 4);
