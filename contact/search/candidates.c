@@ -447,8 +447,6 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
                                  : find_nearest(s, f, l, opposed_to_it, membranes, opposed);
     int32_t entered[BRUNT_MAX_NEAR];
     const int32_t unresolved = list_unresolved(l, opposed, bodies, close * close, entered);
-    out->reach = INFINITY;
-    if (unresolved && l->beside) return; // it leaves through whatever facet is nearest, however far
     int all = unresolved
                   ? find_nearest(s, f, l, (facet_search){.list = entered, .count = unresolved, .guess = -1}, false, any)
                   : 0;
