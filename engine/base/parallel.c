@@ -5,7 +5,7 @@
 
 #include "base/gain.h"
 
-enum { LEAST_PIECES = 4 };
+enum { LEAST_PIECES = 2 };
 
 int brunt_threads_available(void) { return omp_get_num_procs(); }
 

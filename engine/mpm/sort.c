@@ -352,7 +352,7 @@ static void move_arrays(sort_job *j, int64_t slots) {
     brunt_particles *p = j->particles;
     for (int first = 0; first < p->scalar_count; first += BRUNT_SORT_GROUP) {
         j->group = first;
-        brunt_parallel(j->threads, slots, 8192, move_scalars, j, j->timer);
+        brunt_parallel(j->threads, slots, SLOT_GRAIN, move_scalars, j, j->timer);
         for (int k = 0; k < BRUNT_SORT_GROUP && first + k < p->scalar_count; k++) {
             real *t = p->scalar[first + k];
             p->scalar[first + k] = p->scalar[p->scalar_count + k];

@@ -6,7 +6,7 @@
 #include "grid/grid.h"
 #include "mpm/particles.h"
 
-enum { SORT_RANGES = 64, BLOCK_GRAIN = 16 };
+enum { SORT_RANGES = 64, BLOCK_GRAIN = 2, SLOT_GRAIN = 1024 };
 
 // A particle that goes to another block: its slot, both blocks by rank, its new bin.
 typedef struct sort_mover {

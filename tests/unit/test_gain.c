@@ -210,7 +210,7 @@ START_TEST(workers_begin_with_their_share) {
                 shares s;
                 phase_of(&s, threads, count, grain);
                 const int unit = grain ? grain : 1, pieces = (count + unit - 1) / unit,
-                          most = grain ? pieces / 4 : count,
+                          most = grain ? pieces / 2 : count,
                           workers = most < 1         ? 1
                                     : most < threads ? most
                                                      : threads;
