@@ -25,6 +25,10 @@ static int32_t place_of(const brunt_gain *gain, brunt_task_fn *task) {
 brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task, int64_t count) {
     const int32_t at = place_of(gain, task);
     brunt_gain_choice choice = {true, at, -1, at < 0 ? 0 : gain->tasks[at].cost * (double)count};
+    if (gain->begun > 0 && gain->steps.known && !gain->steps.together) {
+        choice.together = false;
+        return choice;
+    }
     if (!(choice.expected > 0)) return choice;
     const int size = choice.expected < 1e-6 ? 0 : ilogb(choice.expected * 1e6);
     choice.size = size < BRUNT_GAIN_SIZES ? size : BRUNT_GAIN_SIZES - 1;
@@ -35,29 +39,59 @@ brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task,
 
 static double rate(const brunt_gain_way *way) { return way->taken / way->expected; }
 
-// After a window of phases run one way: how the next are run. One window may have met a stop of the machine: the way in
-// use is known by the last of them together, and one that has just been taken is soon asked again.
-static void decide(brunt_gain_size *s, double now) {
-    brunt_gain_way *own = &s->ways[s->together], *other = &s->ways[!s->together];
+static bool fills_window(const brunt_gain_size *s) {
+    return s->taken >= WHOLE_WINDOW || (s->phases >= WINDOW_PHASES && s->taken >= WINDOW);
+}
+
+static void open_window(brunt_gain_size *s) { s->phases = 0, s->expected = 0, s->taken = 0; }
+
+// One window may have met a stop of the machine: the way in use is known by the last of them together, and one that has
+// just been taken is soon asked again.
+static void add_window(brunt_gain_size *s) {
+    brunt_gain_way *own = &s->ways[s->together];
     const double fades = s->trial ? 0 : MEMORY / (MEMORY + s->taken);
     own->expected = fades * own->expected + s->expected;
     own->taken = fades * own->taken + s->taken;
+}
+
+// After a window of phases run one way: how the next are run. `sure`: the other way is not tried.
+static void decide(brunt_gain_size *s, double now, bool sure) {
+    const brunt_gain_way *own = &s->ways[s->together], *other = &s->ways[!s->together];
     if (s->trial) {
         const bool stays = rate(own) >= rate(other);
         s->pause = stays && s->pause > 0 ? fmin(2 * s->pause, PAUSE) : FIRST_PAUSE;
         s->next = now + s->pause * s->taken;
         s->together ^= stays;
         s->trial = false;
-    } else if (!(s->together && rate(own) < SURE) &&
-               (now >= s->next || (other->expected > 0 && rate(own) > rate(other)))) { // time, or reason to
+    } else if (!sure && (now >= s->next || (other->expected > 0 && rate(own) > rate(other)))) { // time, or reason to
         s->together = !s->together;
         s->trial = true;
     }
-    s->phases = 0, s->expected = 0, s->taken = 0;
+    open_window(s);
+}
+
+void brunt_gain_begin_step(brunt_gain *gain, double now) { gain->begun = now; }
+
+// The first window, in which arrays grow and all is looked at anew, tells nothing of the steps that follow.
+void brunt_gain_end_step(brunt_gain *gain, double now) {
+    brunt_gain_size *s = &gain->steps;
+    s->phases++, s->expected += 1, s->taken += now - gain->begun;
+    gain->begun = 0;
+    if (!fills_window(s)) return;
+    const bool sure = s->together && s->taken < SURE * gain->work;
+    gain->work = 0;
+    if (s->known) {
+        add_window(s);
+        decide(s, now, sure);
+        return;
+    }
+    s->known = s->together = true;
+    open_window(s);
 }
 
 void brunt_gain_learn(brunt_gain *gain, const brunt_gain_choice *choice, brunt_task_fn *task, int64_t count,
                       double work, double taken, double now) {
+    if (gain->begun > 0) gain->work += work;
     if (choice->task < 0) return;
     double *cost = &gain->tasks[choice->task].cost;
     gain->tasks[choice->task].task = task;
@@ -68,5 +102,7 @@ void brunt_gain_learn(brunt_gain *gain, const brunt_gain_choice *choice, brunt_t
     brunt_gain_size *s = &gain->sizes[choice->size];
     if (!s->known) s->together = choice->together, s->known = true;
     s->phases++, s->expected += choice->expected, s->taken += taken;
-    if (s->taken >= WHOLE_WINDOW || (s->phases >= WINDOW_PHASES && s->taken >= WINDOW)) decide(s, now);
+    if (!fills_window(s)) return;
+    add_window(s);
+    decide(s, now, s->together && rate(&s->ways[true]) < SURE);
 }

@@ -1,7 +1,8 @@
 // Whether threads pay: what phases take on one thread and on all is measured while a run goes on, by the work that is
 // in them, and the quicker way is taken, and asked again from time to time. Sharing a small phase costs more than the
-// phase; on a machine with other work any phase waits for whichever of its threads was left out. No result depends on
-// it.
+// phase; on a machine with other work any phase waits for whichever of its threads was left out. And what a phase gains
+// may be lost by the next, which finds half of its data with another core: so whole steps are measured as well, with
+// phases as they have each proved best and with all on one thread. No result depends on it.
 #pragma once
 
 #include <stdint.h>
@@ -26,6 +27,8 @@ typedef struct brunt_gain_size {
 
 // Zeroed at first.
 typedef struct brunt_gain {
+    brunt_gain_size steps; // of which one is a unit of work; `together`: each phase as it has proved best
+    double begun, work;    // [s] when the step began, 0: there is none; of its phases, in all that are not decided on
     struct {
         brunt_task_fn *task;
         double cost; // [s] of work a unit; 0: not known
@@ -38,6 +41,10 @@ typedef struct brunt_gain_choice {
     int32_t task, size; // where what is learnt of it goes; -1: nowhere
     double expected;    // [s] work; 0: not known
 } brunt_gain_choice;
+
+// A step begins, and ends. Phases outside of steps are measured by themselves.
+void brunt_gain_begin_step(brunt_gain *gain, double now);
+void brunt_gain_end_step(brunt_gain *gain, double now);
 
 brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task, int64_t count);
 

@@ -33,6 +33,14 @@ static _Thread_local brunt_gain gains; // of what this thread starts
 
 void brunt_parallel_adapt(bool on) { adapts = on; }
 
+void brunt_parallel_begin_step(int threads) {
+    if (adapts && threads > 1) brunt_gain_begin_step(&gains, brunt_clock());
+}
+
+void brunt_parallel_end_step(int threads) {
+    if (adapts && threads > 1) brunt_gain_end_step(&gains, brunt_clock());
+}
+
 static atomic_int lent;           // threads at work beside the phases
 static _Thread_local bool beside; // this one is such a thread
 

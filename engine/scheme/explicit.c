@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "scheme/scheme.h"
 
 // ------------------------------------------------------------------------------------------ what is wanted
@@ -183,7 +184,9 @@ static int run_plan(brunt_world *world, double limit, brunt_error *error) {
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     if (!world) return brunt_fail(error, BRUNT_BAD_INPUT, "there is no world to take a step of");
     brunt_step_begin(&world->timing);
+    brunt_parallel_begin_step(world->settings.threads);
     int status = run_plan(world, limit, error);
+    brunt_parallel_end_step(world->settings.threads);
     brunt_step_end(&world->timing);
     if (!status) BRUNT_VALIDATE(world);
     return status;

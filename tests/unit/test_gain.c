@@ -170,6 +170,89 @@ START_TEST(tasks_are_told_apart) {
 }
 END_TEST
 
+// Steps of one long phase and ten short ones, which begin on one core: where the long one is shared, half of what it
+// wrote is with the other core, and the short ones take `far` times as long.
+typedef struct mixture {
+    double shared; // of its work, that the long phase takes on two threads
+    double far;
+} mixture;
+
+static const mixture drags = {0.75, 1.6}, pays = {0.52, 1.02};
+enum { SHORT_PHASES = 10 };
+static const double LONG = 100e-6, SHORT = 10e-6;
+
+static void short_task(void *context, int64_t begin, int64_t end, int worker) { task(context, begin, end, worker); }
+
+static double run_phase(brunt_gain *gain, brunt_task_fn *of, double work, const double takes[2], double *now) {
+    const brunt_gain_choice choice = brunt_gain_choose(gain, of, 100);
+    *now += takes[choice.together];
+    brunt_gain_learn(gain, &choice, of, 100, work, takes[choice.together], *now);
+    return choice.together;
+}
+
+// Steps for so many seconds, `marked` or not. What they took of those on one thread; `*share`: of those that shared.
+static double take_steps(brunt_gain *gain, const mixture *m, bool marked, double seconds, double *now, double *share) {
+    const double begin = *now, both[2] = {LONG, m->shared * LONG};
+    int64_t steps = 0, shared = 0;
+    for (; *now < begin + seconds; steps++) {
+        if (marked) brunt_gain_begin_step(gain, *now);
+        const bool long_one = run_phase(gain, task, LONG, both, now) > 0;
+        const double alone = (long_one ? m->far : 1) * SHORT, either[2] = {alone, 2 * alone};
+        for (int k = 0; k < SHORT_PHASES; k++) run_phase(gain, short_task, alone, either, now);
+        if (marked) brunt_gain_end_step(gain, *now);
+        shared += long_one;
+    }
+    *share = (double)shared / (double)steps;
+    return (*now - begin) / ((double)steps * (LONG + SHORT_PHASES * SHORT));
+}
+
+// What a phase gains and the others lose by it is seen of whole steps alone.
+START_TEST(steps_count_as_a_whole) {
+    brunt_gain apart = {0}, whole = {0};
+    double now = 1, share, then = 1;
+    const double phases = take_steps(&apart, &drags, false, 20, &now, &share);
+    const double first = take_steps(&whole, &drags, true, 2, &then, &share);
+    const double steps = take_steps(&whole, &drags, true, 20, &then, &share);
+    printf("  phases by themselves %.3f of one thread, steps %.3f (%.3f at first)\n", phases, steps, first);
+    ck_assert_double_gt(phases, 1.1);
+    ck_assert_double_lt(steps, 1.01);
+    ck_assert_double_lt(first, 1.02);
+    // Outside of steps a phase is measured by itself.
+    ck_assert_int_ge(brunt_gain_choose(&whole, task, 100).size, 0);
+    brunt_gain_begin_step(&whole, then);
+    ck_assert_int_lt(brunt_gain_choose(&whole, task, 100).size, 0);
+}
+END_TEST
+
+// And where they gain by it they stay shared, or become so again.
+START_TEST(steps_that_gain_are_shared) {
+    brunt_gain gain = {0};
+    double now = 1, share;
+    for (int turn = 0; turn < 4; turn++) {
+        const mixture *m = turn % 2 ? &drags : &pays;
+        const double taken = take_steps(&gain, m, true, 20, &now, &share);
+        printf("  %.3f of one thread, %.3f shared\n", taken, share);
+        if (turn % 2)
+            ck_assert_double_lt(taken, 1.02);
+        else
+            ck_assert_double_gt(share, turn ? 0.85 : 0.98);
+    }
+}
+END_TEST
+
+// Steps all of whose work is shared are not tried on one thread.
+START_TEST(steps_are_sure) {
+    brunt_gain gain = {0};
+    double now = 1;
+    const double both[2] = {LONG, 0.55 * LONG};
+    for (int k = 0; k < 100000; k++) {
+        brunt_gain_begin_step(&gain, now);
+        ck_assert(run_phase(&gain, task, LONG, both, &now) > 0);
+        brunt_gain_end_step(&gain, now);
+    }
+}
+END_TEST
+
 static void mark(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     int32_t *marks = context;
@@ -282,6 +365,9 @@ int main(void) {
     tcase_add_test(tests, rare_waits_count);
     tcase_add_test(tests, costs_survive_a_pause);
     tcase_add_test(tests, tasks_are_told_apart);
+    tcase_add_test(tests, steps_count_as_a_whole);
+    tcase_add_test(tests, steps_that_gain_are_shared);
+    tcase_add_test(tests, steps_are_sure);
     tcase_add_test(tests, workers_begin_with_their_share);
     tcase_add_test(tests, workers_help_each_other);
     tcase_add_test(tests, guesses_go_by_the_work);
