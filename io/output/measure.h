@@ -50,5 +50,5 @@ double measure_half_size(const point_set *set, int64_t p, const double n[3]);
 bool measure_unit_axis(const brunt_measure *m, double axis[3]);
 // The component of a field that a measure asks for, or its magnitude.
 double measure_value(const brunt_measure *m, const point_set *set, int64_t p);
-// Whether a column's unit is that of the curve, which came in SI base units: "m.s-1".
-bool measure_same_unit(const char *column, const char *curve);
+// Whether two units are the same in SI base units, as m/s and m.s-1 are.
+bool measure_same_unit(const char *one, const char *other);

@@ -104,11 +104,13 @@ double measure_value(const brunt_measure *m, const point_set *set, int64_t p) {
     return sqrt(square);
 }
 
-bool measure_same_unit(const char *column, const char *curve) {
-    char base[BRUNT_UNIT_LENGTH] = "", why[256];
-    double one = 1;
+bool measure_same_unit(const char *one, const char *other) {
+    if (strcmp(one, other) == 0) return true;
+    char base[2][BRUNT_UNIT_LENGTH] = {"", ""}, why[256];
+    double value = 1;
     brunt_units *units = brunt_units_open();
-    bool same = units && brunt_units_to_si(units, column, &one, base, why, sizeof why) && strcmp(base, curve) == 0;
+    bool same = units && brunt_units_to_si(units, one, &value, base[0], why, sizeof why) &&
+                brunt_units_to_si(units, other, &value, base[1], why, sizeof why) && strcmp(base[0], base[1]) == 0;
     brunt_units_close(units);
     return same;
 }

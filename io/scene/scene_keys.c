@@ -270,7 +270,7 @@ static const scene_key own_rows[] = {
     {"measures.*.expect", SCENE_ANY_UNIT, "any", OPTIONAL, NONE, "the value it should have"},
     {"measures.*.tolerance", SCENE_ANY_UNIT, "any", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "how far it may be off, relative to expect"},
     {"measures.*.tolerance_is", SCENE_WORD, NULL, "relative", ANY, "relative|absolute", 0, true, "absolute: the tolerance is in the value's own unit"},
-    {"measures.*.unit", SCENE_TEXT, NULL, "''", NONE, "SI unit of the value, as printed"},
+    {"measures.*.unit", SCENE_TEXT, NULL, "''", NONE, "SI unit of the value, as printed (default: that of expect); of the history that of the column, or s for times, which a wrong one does not pass for; of plane bodies also by a metre (N/m), and any where it is divided (relative_to, slope)"},
     {"measures.*.source", SCENE_TEXT, NULL, "''", NONE, "where the expected value is from"},
 };
 

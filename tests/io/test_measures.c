@@ -253,6 +253,42 @@ START_TEST(curves_of_scenes) {
 }
 END_TEST
 
+// What is expected in a unit is that of the column, or a time, or whatever the scene's divisor makes of it.
+START_TEST(units_are_those_of_columns) {
+    static const struct {
+        const char *column, *unit;
+        brunt_take take;
+        double relative_to;
+        int status;
+    } cases[] = {
+        {"body.left.velocity_x", "m/s", BRUNT_TAKE_END, NAN, BRUNT_OK},
+        {"body.left.velocity_x", "m.s-1", BRUNT_TAKE_MAX, NAN, BRUNT_OK},
+        {"body.left.velocity_x", "", BRUNT_TAKE_END, NAN, BRUNT_OK},
+        {"body.left.velocity_x", "m", BRUNT_TAKE_END, NAN, BRUNT_BAD_INPUT},
+        {"body.left.velocity_x", "m", BRUNT_TAKE_MAX_ABS, NAN, BRUNT_BAD_INPUT},
+        {"body.left.velocity_x", "1", BRUNT_TAKE_END, 2, BRUNT_OK},
+        {"body.left.velocity_x", "m/s^2", BRUNT_TAKE_SLOPE, NAN, BRUNT_OK},
+        {"body.left.velocity_x", "s", BRUNT_TAKE_RISE, NAN, BRUNT_OK},
+        {"body.left.velocity_x", "m/s", BRUNT_TAKE_RISE, NAN, BRUNT_BAD_INPUT},
+        {"momentum.angular_z", "J s", BRUNT_TAKE_END, NAN, BRUNT_OK},
+        {"energy.kinetic", "J/m", BRUNT_TAKE_END, NAN, BRUNT_OK}, // of plane bodies
+        {"energy.kinetic", "J/m^2", BRUNT_TAKE_END, NAN, BRUNT_BAD_INPUT},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+        strcpy(m.column, cases[c].column), strcpy(m.unit, cases[c].unit), strcpy(m.name, "v");
+        m.take = cases[c].take, m.relative_to = cases[c].relative_to;
+        brunt_error error = {0};
+        ck_assert_msg(brunt_measure_check(&m, history, world, &error) == cases[c].status, "case %zu: %s", c,
+                      error.message);
+        if (c == 3)
+            ck_assert_str_eq(
+                error.message,
+                "measures.v: what it takes of the history's column 'body.left.velocity_x' is in m/s, not m");
+    }
+}
+END_TEST
+
 START_TEST(values_are_judged) {
     ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
     small_steps(world, 10);
@@ -764,6 +800,7 @@ int main(void) {
     tcase_add_test(values, history_against_a_curve);
     tcase_add_test(values, curves_of_shares);
     tcase_add_test(values, curves_of_scenes);
+    tcase_add_test(values, units_are_those_of_columns);
     tcase_add_test(values, values_are_judged);
     tcase_add_test(values, extent_reaches_to_the_surfaces);
     tcase_add_test(values, extent_of_a_turned_block);
