@@ -134,7 +134,7 @@ static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
     snprintf(reason, sizeof reason,
              "the fixed step of %.6g s is larger than the stable one, %.6g s; time.cfl, a share of the stable one, is "
              "what explicit steps go by where it is given beside time.step",
-             dt, stable);
+             world->settings.fixed_step, stable);
     if (world->settings.fixed_step > 0 && dt > stable) return brunt_fail_short(world, stable, error, reason);
     if (world->clock.time + dt == world->clock.time)
         return brunt_fail_step(&world->clock, NULL, error, "the stable step has become too small to advance the time");
