@@ -100,7 +100,10 @@ static touched_edges touch_of(const edge_pair *p) {
 static bool holds(const brunt_node_to_facet *f, const edge_pair *p) {
     const touched_edges touch = touch_of(p);
     bool any = false;
-    for (int i = 0; i < 4; i++) any = any || brunt_node_holds(&f->touches, touch.node[i], TOUCHED_EDGE);
+    for (int i = 0; i < 4; i++) {
+        any = any || brunt_node_holds(&f->touches, touch.node[i], TOUCHED_EDGE);
+        any = any || brunt_node_holds(&f->touches, touch.node[i], TOUCHED_FACET);
+    }
     return any;
 }
 

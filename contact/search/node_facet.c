@@ -295,6 +295,38 @@ static void mark_node(const brunt_node_to_facet *f, const brunt_contact_surface 
     if (s->membrane.front) __atomic_store_n(&f->nodes.meets[s->membrane.front[n]], 1, __ATOMIC_RELAXED);
 }
 
+// The nodes of what a node is on.
+static const int32_t *corners_under(const brunt_node_to_facet *f, const brunt_contact_surface *s,
+                                    const facet_candidate *h, int *count) {
+    const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
+    *count = feature ? feature->count : brunt_face_corners(s->face[h->face]);
+    return feature ? feature->node : s->face[h->face];
+}
+
+// Whether a node holds something of facets and is on none any more.
+static bool is_left(const brunt_node_to_facet *f, int32_t n) {
+    return f->touches.of && f->nodes.count[n] == 0 && f->touches.of[n][TOUCHED_FACET].held != 0;
+}
+
+// The share of node n, on h, of what the nodes under it hold that have left.
+static void take_share(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, const facet_candidate *h,
+                       touch_round round) {
+    int count;
+    const int32_t *node = corners_under(f, s, h, &count), body[2] = {s->body[n], h->body};
+    if (is_membrane(s, body[0]) || is_membrane(s, body[1])) return;
+    for (int c = 0; c < count; c++)
+        if (is_left(f, node[c])) brunt_node_takes(&f->touches, (int32_t[]){n, node[c]}, body, round);
+}
+
+// A node that leaves past a rim: what it holds goes to those of the other body that are on its facets, where the touch
+// goes on.
+static void take_over(brunt_node_to_facet *f, const brunt_contact_surface *s) {
+    f->touches.left = false;
+    for (touch_round round = TOUCH_CLAIM; round < TOUCH_ROUNDS; round++)
+        for (int32_t n = 0; n < s->node_count; n++)
+            for (int32_t q = 0; q < f->nodes.count[n]; q++) take_share(f, s, n, node_candidate_of(f, s, n, q), round);
+}
+
 // How many constraints and entries each node makes, and which nodes are in them.
 static void count_node_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -307,11 +339,13 @@ static void count_node_constraints(void *context, int64_t begin, int64_t end, in
             __builtin_prefetch(s->face[node_candidate_of(f, s, n + AHEAD, 0)->face]);
         for (int32_t q = 0; q < f->nodes.count[n]; q++) {
             const facet_candidate *h = node_candidate_of(f, s, n, q);
-            const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
-            const int32_t *node = feature ? feature->node : s->face[h->face];
-            const int count = feature ? feature->count : brunt_face_corners(s->face[h->face]);
+            int count;
+            const int32_t *node = corners_under(f, s, h, &count);
             if (q == 0) mark_node(f, s, n);
-            for (int c = 0; c < count; c++) mark_node(f, s, node[c]);
+            for (int c = 0; c < count; c++) {
+                mark_node(f, s, node[c]);
+                if (is_left(f, node[c])) __atomic_store_n(&j->f->touches.left, true, __ATOMIC_RELAXED);
+            }
             entries += 1 + count;
         }
         f->nodes.first[2 * n] = f->nodes.count[n], f->nodes.first[2 * n + 1] = entries;
@@ -359,6 +393,7 @@ static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_fa
     if (brunt_constraints_reserve(constraints, total[0], total[1], total[2], error)) return BRUNT_FAILED;
     constraints->constraint_count = total[0], constraints->entry_count = total[1];
     constraints->dof_node_count = total[2];
+    if (f->touches.left) take_over(f, s);
     if (brunt_constraints_open_blocks(constraints, error)) return BRUNT_FAILED;
     brunt_parallel(m->threads, s->node_count, GRAIN, begin_dof_nodes, &j, m->timer);
     brunt_parallel(m->threads, s->node_count, GRAIN, fill_constraints, &j, m->timer);

@@ -49,6 +49,9 @@ int brunt_node_touches_cross(node_touches *touches, const touched_edges *edges, 
 // go on. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_node_touches_hand_over(node_touches *touches, const uint8_t *constraints_of_node, brunt_error *error);
 
+// What node[1] of body[1] holds goes to node[0] of body[0], which is on its facet.
+void brunt_node_takes(node_touches *touches, const int32_t node[2], const int32_t body[2], touch_round round);
+
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error);

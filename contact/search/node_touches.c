@@ -82,8 +82,7 @@ static brunt_touch_energy *left_at(const node_touches *t, const touched_edges *e
 
 // What is left at the nodes of edges that touch goes to these, in equal shares whatever their order.
 static void give_to_edges(const node_touches *t, const uint8_t *constraints_of_node) {
-    enum { CLAIM, TAKE, CLEAR, ROUNDS };
-    for (int round = 0; round < ROUNDS; round++)
+    for (touch_round round = TOUCH_CLAIM; round < TOUCH_ROUNDS; round++)
         for (int32_t p = 0; p < t->edges_count; p++)
             for (int k = 0; k < 8; k++) {
                 const touched_edges *edges = &t->edges[p];
@@ -91,9 +90,9 @@ static void give_to_edges(const node_touches *t, const uint8_t *constraints_of_n
                 brunt_touch_energy *left =
                     left_at(t, edges, k / 2, k % 2 ? TOUCHED_FACET : TOUCHED_EDGE, constraints_of_node);
                 if (!left) continue;
-                if (round == CLAIM) left->claims++;
-                if (round == TAKE) own->held += left->held / left->claims, own->partner = edges->body[1] + 1;
-                if (round == CLEAR) left->held = 0;
+                if (round == TOUCH_CLAIM) left->claims++;
+                if (round == TOUCH_TAKE) own->held += left->held / left->claims, own->partner = edges->body[1] + 1;
+                if (round == TOUCH_CLEAR) left->held = 0, left->claims = 0;
             }
 }
 
@@ -119,6 +118,14 @@ int brunt_node_touches_hand_over(node_touches *t, const uint8_t *constraints_of_
         own->met = LISTED;
     }
     return BRUNT_OK;
+}
+
+void brunt_node_takes(node_touches *t, const int32_t node[2], const int32_t body[2], touch_round round) {
+    brunt_touch_energy *to = &t->of[node[0]][TOUCHED_FACET], *from = &t->of[node[1]][TOUCHED_FACET];
+    if (!is_of(to, body[1] + 1) || !is_of(from, body[0] + 1)) return;
+    if (round == TOUCH_CLAIM) from->claims++;
+    if (round == TOUCH_TAKE) to->held += from->held / from->claims, to->partner = body[1] + 1;
+    if (round == TOUCH_CLEAR) from->held = 0, from->claims = 0;
 }
 
 // Anew, from what all nodes hold.

@@ -12,12 +12,16 @@ typedef struct touched_edges {
     int32_t node[4], body[2];
 } touched_edges;
 
+// What is left goes to several in equal shares: all claim it first.
+typedef enum touch_round { TOUCH_CLAIM, TOUCH_TAKE, TOUCH_CLEAR, TOUCH_ROUNDS } touch_round;
+
 typedef struct node_touches {
     brunt_touch_energy (*of)[TOUCHED_COUNT];    // each node's; NULL: nothing is given back
     brunt_touch_energy (*spare)[TOUCHED_COUNT]; // while they are put in a new order
     touched_edges *edges;                       // of this step
     int32_t *keeper;                            // all nodes that hold something of edges, and others
     int32_t edges_count, keeper_count;
+    bool left; // a node that is on no facet any more holds something, and others are on its facets
     size_t of_capacity, spare_capacity, edges_capacity, keeper_capacity;
 } node_touches;
 

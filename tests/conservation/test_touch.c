@@ -258,6 +258,20 @@ START_TEST(cubes_keep_their_energy) {
 }
 END_TEST
 
+// Nodes slide off past a rim, where nodes of the other body go on on their facets, or edges cross: what they hold goes
+// on, too. Where it stayed with them 0.17 % was lost.
+START_TEST(what_leaves_past_a_rim_goes_on) {
+    const double speed = _i ? 1.5 : 1.01;
+    brunt_world_def def = oblique_cubes(BRUNT_HEX8, _i ? 0.75 : 0.6, speed, BRUNT_TOUCH_ELASTIC);
+    brunt_world *world = world_take(&def);
+    world_until(world, 0.15 / speed);
+    const brunt_energy e = world_energy(world);
+    printf("  past a rim: contact took %.1e of the energy\n", e.contact / e.initial);
+    ck_assert_double_lt(e.contact, 2e-4 * e.initial);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // At a third of the speed of waves and the longest steps nodes come by a tenth of an edge and more in one.
 START_TEST(longest_steps_give_back_as_much) {
     brunt_world_def def = oblique_cubes(_i ? BRUNT_HEX8 : BRUNT_TET4, 0.5, 1, BRUNT_TOUCH_ELASTIC);
@@ -280,7 +294,7 @@ START_TEST(restart_while_something_is_held) {
     const double speed = _i ? 3 : 1;
     brunt_world_def def = oblique_cubes(_i ? BRUNT_HEX8 : BRUNT_TET4, 0.75, speed, BRUNT_TOUCH_ELASTIC);
     brunt_world *world = world_from(&def), *other = world_take(&def);
-    world_until(world, (0.02 + 0.005 * _i) / speed);
+    world_until(world, (0.0207 + 0.005 * _i) / speed);
     const brunt_energy e = world_energy(world);
     ck_assert_double_gt(e.contact_held, _i ? 0 : 1e-3 * e.initial);
     world_copy_state(world, other);
@@ -331,6 +345,7 @@ int main(void) {
     ADD(held_and_heavy_are_walls);
     ADD(release_rubs);
     ADD_LOOP(cubes_keep_their_energy, 4);
+    ADD_LOOP(what_leaves_past_a_rim_goes_on, 2);
     ADD_LOOP(longest_steps_give_back_as_much, 2);
     ADD_LOOP(restart_while_something_is_held, 8);
     ADD(states_of_before);

@@ -125,6 +125,27 @@ START_TEST(goes_to_edges) {
 }
 END_TEST
 
+// A node has left past a rim, and others are on its facets: those of the body that it touched, which hold nothing of
+// another, get equal shares, whichever is first.
+START_TEST(goes_to_what_is_on_its_facets) {
+    kept k = keep();
+    k.touches.of[0][TOUCHED_FACET] = (brunt_touch_energy){.held = 6, .partner = 2};
+    k.touches.of[2][TOUCHED_FACET] = (brunt_touch_energy){.held = 1, .partner = 1};
+    k.touches.of[4][TOUCHED_FACET] = (brunt_touch_energy){.held = 1, .partner = 3};
+    static const int32_t node[] = {2, 3, 4, 5}, body[] = {1, 1, 1, 2};
+    for (touch_round round = TOUCH_CLAIM; round < TOUCH_ROUNDS; round++)
+        for (int i = 0; i < 4; i++) {
+            const int on = _i ? 3 - i : i;
+            brunt_node_takes(&k.touches, (int32_t[]){node[on], 0}, (int32_t[]){body[on], 0}, round);
+        }
+    static const double expected[NODES] = {0, 0, 4, 3, 1, 0};
+    for (int n = 0; n < NODES; n++) ck_assert_double_eq(*held(&k, n, TOUCHED_FACET), expected[n]);
+    ck_assert_int_eq(k.touches.of[3][TOUCHED_FACET].partner, 1);
+    ck_assert_int_eq(k.touches.of[0][TOUCHED_FACET].claims, 0);
+    brunt_node_touches_free(&k.touches);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("node_touches");
     TCase *tests = tcase_create("hand_over");
@@ -134,6 +155,7 @@ int main(void) {
     tcase_add_test(tests, stays_where_others_are);
     tcase_add_loop_test(tests, goes_to_facets, 0, 2);
     tcase_add_loop_test(tests, goes_to_edges, 0, 2);
+    tcase_add_loop_test(tests, goes_to_what_is_on_its_facets, 0, 2);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
