@@ -489,7 +489,7 @@ static brunt_world *pressed(int threads) {
     def_box(&def, "upper", XYZ(0, 0.02, 0), XYZ(1, 0.52, 0));
     def.gravity[1] = -10;
     def.contact.method = BRUNT_CONTACT_BARRIER, def.contact.distance = 0.05;
-    def.newton.iterations = 12; // some steps are cut
+    def.newton.iterations = 16; // by the rounding of some processors a step is cut, by 12 they do not converge
     def.threads = threads;
     return world_take(&def);
 }
