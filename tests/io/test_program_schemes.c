@@ -41,7 +41,7 @@ START_TEST(step_too_long) {
     small_expect(
         "check long.yaml --quick --set time.scheme=explicit", 70,
         "time.cfl, a share of the stable one, is what explicit steps go by where it is given beside time.step");
-    // It is told as it was asked for, though the first step would end sooner, on a picture.
+    // It is told as it was asked for, though a picture cuts the first step.
     small_expect("check long.yaml --quick --set time.scheme=explicit --set output.every='9 ms'", 70,
                  "the fixed step of 0.01 s is larger");
 }
