@@ -19,7 +19,7 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
     const brunt_surface_change *c = &s->renewal.change;
     if (!f || !c->any) return BRUNT_OK;
     if (brunt_distance_cache_fit(f, s->node_count, c->node_count, error) ||
-        brunt_node_touches_renew(&f->touches, s, error) ||
+        brunt_node_touches_renew(&f->touches, s, error) || brunt_initial_penetration_renew(&f->penetration, s, error) ||
         RESERVE(&f->cache, spare, s->node_count + 1, "nearest facets of nodes", error))
         return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) {

@@ -107,8 +107,15 @@ static bool holds(const brunt_node_to_facet *f, const edge_pair *p) {
     return any;
 }
 
+// The gap beyond what edges that cross since they met may lie in each other.
+static double gap_beyond(const brunt_contact_surface *s, brunt_node_to_facet *f, const edge_pair *p) {
+    const int32_t *a = p->edge[0]->node, *b = p->edge[1]->node, node[4] = {a[0], a[1], b[0], b[1]};
+    if (!f->penetration.allowed || !(p->gap > 0 || cross_between(s, p, 0))) return p->gap;
+    return brunt_initial_penetration_meet(&f->penetration, node, 4, p->gap);
+}
+
 // Whether two edges meet within the step, and how.
-static bool edges_meet(const brunt_contact_context *m, const brunt_node_to_facet *f, edge_pair *p) {
+static bool edges_meet(const brunt_contact_context *m, brunt_node_to_facet *f, edge_pair *p) {
     const double travel = f->bodies.travel;
     const brunt_contact_surface *s = m->surface;
     double a[2][3], b[2][3];
@@ -120,7 +127,8 @@ static bool edges_meet(const brunt_contact_context *m, const brunt_node_to_facet
     if (p->gap > travel || p->gap < -fmin(p->edge[0]->depth, p->edge[1]->depth)) return false;
     if (p->gap < -way_across(p)) return false;
     const double approach = rate(p, s->v);
-    p->target = brunt_node_to_facet_target(s, p->gap, approach, p->gap < 0 ? rate(p, s->old) : 0, m->dt);
+    const double gap[2] = {p->gap, gap_beyond(s, f, p)};
+    p->target = brunt_node_to_facet_target(s, gap, approach, p->gap < 0 ? rate(p, s->old) : 0, m->dt);
     if (!(approach < p->target + TOUCH * s->mean_edge / m->dt) && !holds(f, p)) return false;
     return cross_between(s, p, p->gap > 0 && approach < 0 ? fmin(p->gap / -approach, m->dt) : 0);
 }

@@ -22,13 +22,13 @@ typedef struct search_job {
 
 // Least velocity along the normal: to arrive at the surface, not past it. What is behind it is pushed out, but no
 // faster than half as fast as it came, by which no impact gains energy. What rests comes anew each step, as the load
-// brings it: pushing that out does work, and is only done over the small depths that unfinished sweeps leave; deeper
-// ones wait until they part by themselves.
-double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
+// brings it: pushing that out does work, and is only done over the small depths that unfinished sweeps leave, beyond
+// what it may lie there; deeper ones wait until they part by themselves.
+double brunt_node_to_facet_target(const brunt_contact_surface *s, const double gap[2], double approach, double before,
                                   double dt) {
-    if (gap >= 0) return -gap / dt;
-    double came = gap > -BRUNT_SHALLOW * s->mean_edge ? approach : before;
-    return fmin(CORRECTION * -gap / dt, RESTITUTION * fmax(0, -came));
+    if (gap[0] >= 0) return -gap[0] / dt;
+    const bool loaded = gap[0] > -BRUNT_SHALLOW * s->mean_edge;
+    return fmin(CORRECTION * -gap[loaded] / dt, RESTITUTION * fmax(0, loaded ? -approach : -before));
 }
 
 void brunt_node_to_facet_corners(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
@@ -133,11 +133,12 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         facet_candidate *h = &found->candidate[q];
         if (h->gap > f->bodies.travel) continue;
         s->output.gap[n] = least_of(s->output.gap[n], h->gap);
+        const double gap[2] = {h->gap, brunt_initial_penetration_meet(&f->penetration, &n, 1, h->gap)};
         brunt_corners under;
         brunt_node_to_facet_corners(s, h, s->x[n], &under);
         const double approach = brunt_node_to_facet_approach(&under, h->n, s->v[n], s->v);
         h->target = brunt_node_to_facet_target(
-            s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(&under, h->n, s->old[n], s->old) : 0, m->dt);
+            s, gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(&under, h->n, s->old[n], s->old) : 0, m->dt);
         if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET) &&
             !brunt_node_holds(&f->touches, n, TOUCHED_EDGE))
             continue;
@@ -424,13 +425,9 @@ static bool is_anew(const brunt_contact_surface *s, const brunt_node_to_facet *f
     return anew;
 }
 
-int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
-                             brunt_constraint_set *constraints, brunt_error *error) {
-    const brunt_contact_surface *s = m->surface;
-    for (int k = 0; k < s->fem_count && f->cache.node; k++)
-        if (is_anew(s, f, k))
-            for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) f->cache.node[n] = (node_distance){0};
-    if (!f->bodies.pair_count) return BRUNT_OK;
+// Where bodies are near each other.
+static int find_between(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
+                        brunt_constraint_set *constraints, brunt_error *error) {
     if (brunt_facet_cells_make(m, f, error)) return BRUNT_FAILED;
     search_job j = {.m = m, .f = f, .constraints = constraints};
     if (search_from_nodes(&j, error) || add_node_constraints(m, f, constraints, error) ||
@@ -443,6 +440,19 @@ int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, in
             brunt_node_to_facet_particles(m, f, &mpm[k], k, box, constraints, error))
             return BRUNT_FAILED;
     }
+    return BRUNT_OK;
+}
+
+int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
+                             brunt_constraint_set *constraints, brunt_error *error) {
+    const brunt_contact_surface *s = m->surface;
+    for (int k = 0; k < s->fem_count && f->cache.node; k++)
+        if (is_anew(s, f, k))
+            for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) f->cache.node[n] = (node_distance){0};
+    if (!f->penetration.begun && brunt_initial_penetration_begin(&f->penetration, s->node_count, error))
+        return BRUNT_FAILED;
+    if (f->bodies.pair_count && find_between(m, mpm, mpm_count, f, constraints, error)) return BRUNT_FAILED;
+    if (f->penetration.allowed) brunt_initial_penetration_end(&f->penetration, s);
     return BRUNT_OK;
 }
 

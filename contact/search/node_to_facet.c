@@ -9,6 +9,7 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     for (int t = 0; t < f->nodes.masters_count; t++) brunt_free(f->nodes.masters[t].master);
     brunt_feature_edges_free(&f->edges);
     brunt_node_touches_free(&f->touches);
+    brunt_initial_penetration_free(&f->penetration);
     void *owned[] = {f->bodies.box,      f->bodies.pair,   f->bodies.box_of, f->bodies.first,   f->bodies.list,
                      f->cells.first,     f->cells.face,    f->cells.x,       f->cells.box,      f->nodes.count,
                      f->nodes.candidate, f->cache.nearest, f->cache.node,    f->nodes.dof_of,   f->nodes.first,
@@ -30,8 +31,9 @@ size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
                    b->list_capacity + c->first_capacity + c->face_capacity + c->x_capacity + c->box_capacity +
                    c->moved_capacity + c->near_capacity + d->node_capacity + d->nearest_capacity + d->spare_capacity +
                    d->beside_capacity + f->touches.of_capacity + f->touches.spare_capacity + f->touches.edges_capacity +
-                   f->touches.keeper_capacity + n->count_capacity + n->candidate_capacity + n->dof_of_capacity +
-                   n->first_capacity + n->meets_capacity + e->near_capacity + e->first_capacity + e->feature_capacity +
+                   f->touches.keeper_capacity + f->penetration.allowed_capacity + f->penetration.deepest_capacity +
+                   n->count_capacity + n->candidate_capacity + n->dof_of_capacity + n->first_capacity +
+                   n->meets_capacity + e->near_capacity + e->first_capacity + e->feature_capacity +
                    e->feature_first_capacity + e->span_capacity + p->run_capacity;
     bytes += (size_t)n->masters_count * sizeof *n->masters + (size_t)p->list_count * sizeof *p->list;
     for (int t = 0; t < n->masters_count; t++) bytes += n->masters[t].capacity;
@@ -63,5 +65,6 @@ void brunt_node_to_facet_validate(const brunt_node_to_facet *f, const brunt_cont
     if (!f) return;
     brunt_distance_cache_validate(&f->cache, s->node_count, s->face_count);
     brunt_node_touches_validate(&f->touches, s->node_count);
+    brunt_initial_penetration_validate(&f->penetration, s->node_count);
     brunt_facet_cells_validate(&f->cells, s->face_count);
 }

@@ -55,6 +55,14 @@ void brunt_node_touches_state_get(const brunt_node_to_facet *node_to_facet, cons
                                   double *out);
 int brunt_node_touches_state_set(brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
                                  const double *in, int64_t count, brunt_error *error);
+// How deep nodes lie in other bodies since they met, as it is saved after the states above; nothing where nothing has
+// overlapped since the start.
+int64_t brunt_initial_penetration_state_count(const brunt_node_to_facet *node_to_facet,
+                                              const brunt_contact_surface *surface);
+void brunt_initial_penetration_state_get(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
+                                         double *out);
+int brunt_initial_penetration_state_set(brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
+                                        const double *in, int64_t count, brunt_error *error);
 void brunt_node_to_facet_free(brunt_node_to_facet *node_to_facet);
 // Aborts where what is remembered is not of this surface. NULL: nothing is.
 void brunt_node_to_facet_validate(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface);

@@ -11,6 +11,7 @@
 #include "contact/search/distance_cache.h"
 #include "contact/search/edge_edge.h"
 #include "contact/search/facet_cells.h"
+#include "contact/search/initial_penetration.h"
 #include "contact/search/node_touches.h"
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -20,6 +21,7 @@ struct brunt_node_to_facet {
     facet_cells cells;
     distance_cache cache;
     node_touches touches;
+    initial_penetration penetration;
     node_candidates nodes;
     near_edges edges;
     particle_candidates particles;
@@ -80,7 +82,8 @@ bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_
                                     const double *normal, double least, candidate_list *out);
 
 // --- node_facet.c
-double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
+// gap [m]: all of it, and beyond what a place may lie in the other body (initial_penetration.h).
+double brunt_node_to_facet_target(const brunt_contact_surface *s, const double gap[2], double approach, double before,
                                   double dt);
 double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const double direction[3]);
 // The support of a surface node, made when it is first asked for. BRUNT_NONE: out of memory.

@@ -98,7 +98,8 @@ static int add_particle_candidate(looking_block *of, int64_t s, const double x[3
         brunt_particle_velocity(j->body, of->b, s, BRUNT_NODE_OLD, old);
         before = brunt_node_to_facet_approach(&under, h->n, old, surface->old);
     }
-    const double target = brunt_node_to_facet_target(surface, gap, fmin(before, LIFT * approach), before, j->m->dt);
+    const double target =
+        brunt_node_to_facet_target(surface, (double[]){gap, gap}, fmin(before, LIFT * approach), before, j->m->dt);
     if (!sprung && !(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;
     particle_list *list = of->list;
     const size_t used = (size_t)list->count;

@@ -53,7 +53,7 @@ static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, dou
         approach += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
         before += plane->normal[a] * (s->old[n][a] - plane->velocity[a]);
     }
-    double target = brunt_node_to_facet_target(s, gap, approach, before, j->m->dt);
+    double target = brunt_node_to_facet_target(s, (double[]){gap, gap}, approach, before, j->m->dt);
     if (!(approach < target + 1e-6 * s->mean_edge / j->m->dt) && !brunt_node_holds(&j->f->touches, n, TOUCHED_PLANE))
         return BRUNT_OK;
     int32_t at = brunt_constraints_add(constraints, error),

@@ -113,6 +113,23 @@ static int64_t touches_count(const brunt_contact *contact) {
     return contact->def.touch == BRUNT_TOUCH_ELASTIC ? brunt_node_touches_state_count(&contact->surface) : 0;
 }
 
+// Of what overlaps since the start.
+static int64_t penetrations_count(const brunt_contact *contact) {
+    return brunt_initial_penetration_state_count(contact->node_to_facet, &contact->surface);
+}
+
+static int64_t search_count(const brunt_contact *contact) {
+    return brunt_node_to_facet_state_count(&contact->surface) + touches_count(contact) + penetrations_count(contact);
+}
+
+// Whether a state of before says this scene's search: there may be no more overlap, or some, and checkpoints of before
+// say less of touches.
+static bool search_fits(const brunt_contact *contact, int64_t count) {
+    const int64_t all = search_count(contact) - penetrations_count(contact);
+    return count == all || count == all - touches_count(contact) / 2 ||
+           count == all + brunt_surface_slots(&contact->surface);
+}
+
 static brunt_state_block world_info(const brunt_world *world, int index) {
     brunt_state_block block = {.type = 'd'};
     static const char *const names[] = {"world/clock",          "world/walls",   "world/pairs", "world/contact_search",
@@ -123,7 +140,7 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
                                   brunt_gas_state_count(&world->boundaries.sets) +
                                   brunt_boundary_surfaces_state_count(&world->boundaries.surfaces),
                               world->pairs.count * account,
-                              brunt_node_to_facet_state_count(&world->contact.surface) + touches_count(&world->contact),
+                              search_count(&world->contact),
                               brunt_surface_affine_count(&world->contact.surface),
                               brunt_erosion_state_count(&world->erosion),
                               brunt_saved_count(newton_table, NEWTON_ROWS) + brunt_implicit_kept_count(&world->plan)};
@@ -137,15 +154,18 @@ static void get_search(const brunt_contact *contact, double *to) {
     brunt_node_to_facet_state_get(contact->node_to_facet, &contact->surface, to);
     to += brunt_node_to_facet_state_count(&contact->surface);
     if (touches_count(contact)) brunt_node_touches_state_get(contact->node_to_facet, &contact->surface, to);
+    brunt_initial_penetration_state_get(contact->node_to_facet, &contact->surface, to + touches_count(contact));
 }
 
 static int set_search(brunt_contact *contact, int mpm_count, const double *from, int64_t count, brunt_error *error) {
     if (brunt_node_to_facet_state_set(&contact->node_to_facet, &contact->surface, mpm_count, from, error))
         return BRUNT_FAILED;
-    const int64_t before = brunt_node_to_facet_state_count(&contact->surface);
-    return touches_count(contact) ? brunt_node_touches_state_set(contact->node_to_facet, &contact->surface,
-                                                                 from + before, count - before, error)
-                                  : BRUNT_OK;
+    const int64_t before = brunt_node_to_facet_state_count(&contact->surface), touches = touches_count(contact),
+                  after = count > before + touches ? count - before - touches : 0;
+    from += before;
+    if (touches && brunt_node_touches_state_set(contact->node_to_facet, &contact->surface, from, count - before, error))
+        return BRUNT_FAILED;
+    return brunt_initial_penetration_state_set(contact->node_to_facet, &contact->surface, from + touches, after, error);
 }
 
 static void world_get(brunt_world *world, int block, double *to) {
@@ -210,7 +230,7 @@ static int check_set(brunt_world *world, int32_t index, const void *in, int64_t 
     // Of a body that erodes there may be fewer particles by now than in the world as it is; its ids say how many.
     bool fits = count == block.count;
     if (mpm && at.block == 0 && mpm->erodes) fits = count >= 0 && count <= mpm->particles.made;
-    if (!at.body && at.block == SEARCH_BLOCK) fits = fits || count == block.count - touches_count(&world->contact) / 2;
+    if (!at.body && at.block == SEARCH_BLOCK) fits = search_fits(&world->contact, count);
     if (!at.body && at.block == NEWTON_BLOCK)
         fits = brunt_implicit_kept_fits(&world->plan, count - brunt_saved_count(newton_table, NEWTON_ROWS));
     if (!fits)

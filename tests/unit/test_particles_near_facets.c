@@ -186,7 +186,8 @@ static bool passes(const brunt_contact_context *m, brunt_body *body, int32_t b, 
     brunt_particle_velocity(body, b, s, BRUNT_NODE_OLD, old);
     const double approach = brunt_node_to_facet_approach(&under, h->n, v, m->surface->v);
     if (h->gap < 0) before = brunt_node_to_facet_approach(&under, h->n, old, m->surface->old);
-    h->target = brunt_node_to_facet_target(m->surface, h->gap, fmin(before, 0.02 * approach), before, m->dt);
+    h->target = brunt_node_to_facet_target(m->surface, (double[]){h->gap, h->gap}, fmin(before, 0.02 * approach),
+                                           before, m->dt);
     return approach < h->target + 1e-6 * m->surface->mean_edge / m->dt;
 }
 
