@@ -73,12 +73,6 @@ static void keep_master(brunt_node_to_facet *f, const brunt_contact_surface *s, 
     brunt_node_to_facet_master(s, h, x, &of->master[of->count++]);
 }
 
-// Place `q` of node n: the first places of all nodes, then the second ones, which few nodes need.
-static facet_candidate *node_candidate_of(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
-                                          int32_t q) {
-    return &f->nodes.candidate[(int64_t)q * s->node_count + n];
-}
-
 static inline double least_of(double a, double b) { return b < a ? b : a; }
 
 // A query from a node; its lists of bodies, which are long, stay as they are until they are made.
@@ -224,10 +218,6 @@ double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const
     return area;
 }
 
-static const brunt_master *kept_master(const brunt_node_to_facet *f, const facet_candidate *h) {
-    return &f->nodes.masters[h->worker].master[h->master];
-}
-
 // What a node's constraint is made of.
 static inline void fetch_constraint(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n) {
     const int32_t *corner = s->face[node_candidate_of(f, s, n, 0)->face];
@@ -296,38 +286,6 @@ static void mark_node(const brunt_node_to_facet *f, const brunt_contact_surface 
     if (s->membrane.front) __atomic_store_n(&f->nodes.meets[s->membrane.front[n]], 1, __ATOMIC_RELAXED);
 }
 
-// The nodes of what a node is on.
-static const int32_t *corners_under(const brunt_node_to_facet *f, const brunt_contact_surface *s,
-                                    const facet_candidate *h, int *count) {
-    const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
-    *count = feature ? feature->count : brunt_face_corners(s->face[h->face]);
-    return feature ? feature->node : s->face[h->face];
-}
-
-// Whether a node holds something of facets and is on none any more.
-static bool is_left(const brunt_node_to_facet *f, int32_t n) {
-    return f->touches.of && f->nodes.count[n] == 0 && f->touches.of[n][TOUCHED_FACET].held != 0;
-}
-
-// The share of node n, on h, of what the nodes under it hold that have left.
-static void take_share(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, const facet_candidate *h,
-                       touch_round round) {
-    int count;
-    const int32_t *node = corners_under(f, s, h, &count), body[2] = {s->body[n], h->body};
-    if (is_membrane(s, body[0]) || is_membrane(s, body[1])) return;
-    for (int c = 0; c < count; c++)
-        if (is_left(f, node[c])) brunt_node_takes(&f->touches, (int32_t[]){n, node[c]}, body, round);
-}
-
-// A node that leaves past a rim: what it holds goes to those of the other body that are on its facets, where the touch
-// goes on.
-static void take_over(brunt_node_to_facet *f, const brunt_contact_surface *s) {
-    f->touches.left = false;
-    for (touch_round round = TOUCH_CLAIM; round < TOUCH_ROUNDS; round++)
-        for (int32_t n = 0; n < s->node_count; n++)
-            for (int32_t q = 0; q < f->nodes.count[n]; q++) take_share(f, s, n, node_candidate_of(f, s, n, q), round);
-}
-
 // How many constraints and entries each node makes, and which nodes are in them.
 static void count_node_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -341,12 +299,9 @@ static void count_node_constraints(void *context, int64_t begin, int64_t end, in
         for (int32_t q = 0; q < f->nodes.count[n]; q++) {
             const facet_candidate *h = node_candidate_of(f, s, n, q);
             int count;
-            const int32_t *node = corners_under(f, s, h, &count);
+            const int32_t *node = node_corners_under(f, s, h, &count);
             if (q == 0) mark_node(f, s, n);
-            for (int c = 0; c < count; c++) {
-                mark_node(f, s, node[c]);
-                if (is_left(f, node[c])) __atomic_store_n(&j->f->touches.left, true, __ATOMIC_RELAXED);
-            }
+            for (int c = 0; c < count; c++) mark_node(f, s, node[c]);
             entries += 1 + count;
         }
         f->nodes.first[2 * n] = f->nodes.count[n], f->nodes.first[2 * n + 1] = entries;
@@ -394,7 +349,6 @@ static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_fa
     if (brunt_constraints_reserve(constraints, total[0], total[1], total[2], error)) return BRUNT_FAILED;
     constraints->constraint_count = total[0], constraints->entry_count = total[1];
     constraints->dof_node_count = total[2];
-    if (f->touches.left) take_over(f, s);
     if (brunt_constraints_open_blocks(constraints, error)) return BRUNT_FAILED;
     brunt_parallel(m->threads, s->node_count, GRAIN, begin_dof_nodes, &j, m->timer);
     brunt_parallel(m->threads, s->node_count, GRAIN, fill_constraints, &j, m->timer);
@@ -433,6 +387,7 @@ static int find_between(const brunt_contact_context *m, brunt_body *mpm, int mpm
     if (search_from_nodes(&j, error) || add_node_constraints(m, f, constraints, error) ||
         brunt_edge_edge_find(m, f, constraints, error))
         return BRUNT_FAILED;
+    if (f->touches.of) brunt_touches_go_on(m, f);
     for (int k = 0; k < mpm_count; k++) {
         int32_t box = 0;
         while (f->bodies.box[box].mpm != k) box++;

@@ -27,6 +27,24 @@ struct brunt_node_to_facet {
     particle_candidates particles;
 };
 
+// Place `q` of node n: the first places of all nodes, then the second ones, which few nodes need.
+static inline facet_candidate *node_candidate_of(const brunt_node_to_facet *f, const brunt_contact_surface *s,
+                                                 int32_t n, int32_t q) {
+    return &f->nodes.candidate[(int64_t)q * s->node_count + n];
+}
+
+static inline const brunt_master *kept_master(const brunt_node_to_facet *f, const facet_candidate *h) {
+    return &f->nodes.masters[h->worker].master[h->master];
+}
+
+// The nodes of what a node is on.
+static inline const int32_t *node_corners_under(const brunt_node_to_facet *f, const brunt_contact_surface *s,
+                                                const facet_candidate *h, int *count) {
+    const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
+    *count = feature ? feature->count : brunt_face_corners(s->face[h->face]);
+    return feature ? feature->node : s->face[h->face];
+}
+
 #define RESERVE(f, array, count, what, error) BRUNT_CAPACITY((f)->array, (size_t)(count), 0, what, error)
 
 // --- node_to_facet.c
@@ -51,8 +69,10 @@ int brunt_node_touches_cross(node_touches *touches, const touched_edges *edges, 
 // go on. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_node_touches_hand_over(node_touches *touches, const uint8_t *constraints_of_node, brunt_error *error);
 
-// What node[1] of body[1] holds goes to node[0] of body[0], which is on its facet.
-void brunt_node_takes(node_touches *touches, const int32_t node[2], const int32_t body[2], touch_round round);
+// --- touches_left.c
+// After that: what nodes hold that touch nothing any more goes to those that touch the same body beside them, and to
+// those of that body that are on their facets.
+void brunt_touches_go_on(const brunt_contact_context *m, brunt_node_to_facet *f);
 
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.

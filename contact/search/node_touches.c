@@ -44,15 +44,6 @@ static int add_keeper(node_touches *t, int32_t n, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// `met`, of what is kept for edges, in this step: nothing touches there; edges of one other body do; of several, or of
-// another than those that what is held is of; they are listed.
-enum { NONE_TOUCH, TOUCHES, CONTESTED, LISTED };
-
-// Whether what is held is of a partner; what is of 0 is of anyone.
-static bool is_of(const brunt_touch_energy *touch, int32_t partner) {
-    return touch->held == 0 || !touch->partner || touch->partner == partner;
-}
-
 static void mark_edges(const node_touches *t) {
     const touched_edges *const end = t->edges + t->edges_count;
     for (int32_t q = 0; q < t->keeper_count; q++) t->of[t->keeper[q]][TOUCHED_EDGE].met = NONE_TOUCH;
@@ -118,14 +109,6 @@ int brunt_node_touches_hand_over(node_touches *t, const uint8_t *constraints_of_
         own->met = LISTED;
     }
     return BRUNT_OK;
-}
-
-void brunt_node_takes(node_touches *t, const int32_t node[2], const int32_t body[2], touch_round round) {
-    brunt_touch_energy *to = &t->of[node[0]][TOUCHED_FACET], *from = &t->of[node[1]][TOUCHED_FACET];
-    if (!is_of(to, body[1] + 1) || !is_of(from, body[0] + 1)) return;
-    if (round == TOUCH_CLAIM) from->claims++;
-    if (round == TOUCH_TAKE) to->held += from->held / from->claims, to->partner = body[1] + 1;
-    if (round == TOUCH_CLEAR) from->held = 0, from->claims = 0;
 }
 
 // Anew, from what all nodes hold.

@@ -21,9 +21,18 @@ typedef struct node_touches {
     touched_edges *edges;                       // of this step
     int32_t *keeper;                            // all nodes that hold something of edges, and others
     int32_t edges_count, keeper_count;
-    bool left; // a node that is on no facet any more holds something, and others are on its facets
+    bool left; // some node that touches nothing any more holds something
     size_t of_capacity, spare_capacity, edges_capacity, keeper_capacity;
 } node_touches;
+
+// `met`, of what is kept for edges, in this step: nothing touches there; edges of one other body do; of several, or of
+// another than those that what is held is of; they are listed.
+enum { NONE_TOUCH, TOUCHES, CONTESTED, LISTED };
+
+// Whether what is held is of a partner; what is of 0 is of anyone.
+static inline bool is_of(const brunt_touch_energy *touch, int32_t partner) {
+    return touch->held == 0 || !touch->partner || touch->partner == partner;
+}
 
 // The touch of a node; NULL: none is kept.
 static inline brunt_touch_energy *brunt_node_touch(const node_touches *touches, int32_t n, touched what) {

@@ -125,24 +125,91 @@ START_TEST(goes_to_edges) {
 }
 END_TEST
 
-// A node has left past a rim, and others are on its facets: those of the body that it touched, which hold nothing of
-// another, get equal shares, whichever is first.
-START_TEST(goes_to_what_is_on_its_facets) {
-    kept k = keep();
-    k.touches.of[0][TOUCHED_FACET] = (brunt_touch_energy){.held = 6, .partner = 2};
-    k.touches.of[2][TOUCHED_FACET] = (brunt_touch_energy){.held = 1, .partner = 1};
-    k.touches.of[4][TOUCHED_FACET] = (brunt_touch_energy){.held = 1, .partner = 3};
-    static const int32_t node[] = {2, 3, 4, 5}, body[] = {1, 1, 1, 2};
-    for (touch_round round = TOUCH_CLAIM; round < TOUCH_ROUNDS; round++)
-        for (int i = 0; i < 4; i++) {
-            const int on = _i ? 3 - i : i;
-            brunt_node_takes(&k.touches, (int32_t[]){node[on], 0}, (int32_t[]){body[on], 0}, round);
-        }
-    static const double expected[NODES] = {0, 0, 4, 3, 1, 0};
-    for (int n = 0; n < NODES; n++) ck_assert_double_eq(*held(&k, n, TOUCHED_FACET), expected[n]);
-    ck_assert_int_eq(k.touches.of[3][TOUCHED_FACET].partner, 1);
-    ck_assert_int_eq(k.touches.of[0][TOUCHED_FACET].claims, 0);
-    brunt_node_touches_free(&k.touches);
+// ------------------------------------------------------------------------------------------ nodes that have left
+
+// Two facets of two bodies, of four nodes each.
+typedef struct facets {
+    brunt_contact_surface surface;
+    brunt_node_to_facet f;
+    facet_candidate candidate[2 * 2 * 4];
+    int32_t face[2][4], body[8], first[9], of[8];
+    uint8_t count[8];
+} facets;
+
+static void make_facets(facets *t) {
+    *t = (facets){
+        .face = {{0, 1, 2, 3}, {4, 5, 6, 7}}, .body = {0, 0, 0, 0, 1, 1, 1, 1}, .of = {0, 0, 0, 0, 1, 1, 1, 1}};
+    for (int n = 0; n < 9; n++) t->first[n] = n;
+    t->surface = (brunt_contact_surface){
+        .node_count = 8, .face = t->face, .body = t->body, .face_first = t->first, .face_of = t->of};
+    t->f.nodes.count = t->count, t->f.nodes.candidate = t->candidate;
+    ck_assert_int_eq(BRUNT_NEW(t->f.touches.of, 8, "touches", NULL), BRUNT_OK);
+}
+
+// Node n is on a facet, and a second time if it is on one already.
+static void put_on(facets *t, int n, int body) {
+    t->candidate[8 * t->count[n]++ + n] = (facet_candidate){.face = body, .body = body};
+}
+
+static brunt_touch_energy *touch(facets *t, int n, touched what) { return &t->f.touches.of[n][what]; }
+
+static void go_on(facets *t) {
+    const brunt_contact_context m = {.surface = &t->surface, .threads = 1};
+    brunt_touches_go_on(&m, &t->f);
+}
+
+// A node has left past a rim, of a facet or of an edge: those beside it that are on the body that it touched, and the
+// nodes of that one on its facets, get equal shares, unless they hold something of another body.
+START_TEST(goes_on_beside_and_above) {
+    facets t;
+    make_facets(&t);
+    *touch(&t, 0, TOUCHED_FACET) = (brunt_touch_energy){.held = 6, .partner = 2};
+    *touch(&t, 0, TOUCHED_EDGE) = (brunt_touch_energy){.held = 3, .partner = 2};
+    *touch(&t, 0, TOUCHED_PLANE) = (brunt_touch_energy){.held = 1, .partner = -1};
+    *touch(&t, 2, TOUCHED_FACET) = (brunt_touch_energy){.held = 1, .partner = 2};
+    *touch(&t, 5, TOUCHED_FACET) = (brunt_touch_energy){.held = 1, .partner = 3};
+    put_on(&t, 1, 1), put_on(&t, 2, 1), put_on(&t, 4, 0), put_on(&t, 5, 0);
+    go_on(&t);
+    static const double expected[8] = {0, 3, 4, 0, 3, 1, 0, 0};
+    for (int n = 0; n < 8; n++) ck_assert_double_eq(touch(&t, n, TOUCHED_FACET)->held, expected[n]);
+    ck_assert_int_eq(touch(&t, 1, TOUCHED_FACET)->partner, 2);
+    ck_assert_int_eq(touch(&t, 4, TOUCHED_FACET)->partner, 1);
+    ck_assert_double_eq(touch(&t, 0, TOUCHED_EDGE)->held, 0);
+    ck_assert_double_eq(touch(&t, 0, TOUCHED_PLANE)->held, 1);
+    ck_assert_int_eq(touch(&t, 0, TOUCHED_FACET)->claims, 0);
+    go_on(&t);
+    for (int n = 0; n < 8; n++) ck_assert_double_eq(touch(&t, n, TOUCHED_FACET)->held, expected[n]);
+    brunt_node_touches_free(&t.f.touches);
+}
+END_TEST
+
+// It stays where none touches that body; with a node that is on a facet; and with edges that cross.
+START_TEST(stays_with_what_touches) {
+    facets t;
+    make_facets(&t);
+    *touch(&t, 0, _i == 3 ? TOUCHED_EDGE : TOUCHED_FACET) = (brunt_touch_energy){.held = 6, .partner = _i ? 2 : 3};
+    if (_i != 1) put_on(&t, 1, 1), put_on(&t, 4, 0);
+    if (_i == 2) put_on(&t, 0, 1);
+    if (_i == 3) touch(&t, 0, TOUCHED_EDGE)->met = LISTED;
+    go_on(&t);
+    ck_assert_double_eq(touch(&t, 0, _i == 3 ? TOUCHED_EDGE : TOUCHED_FACET)->held, 6);
+    brunt_node_touches_free(&t.f.touches);
+}
+END_TEST
+
+// Between two bodies a node takes of one of them: what it holds something of, or the first.
+START_TEST(takes_of_one_body) {
+    facets t;
+    make_facets(&t);
+    *touch(&t, 0, TOUCHED_FACET) = (brunt_touch_energy){.held = 6, .partner = 2};
+    *touch(&t, 3, TOUCHED_FACET) = (brunt_touch_energy){.held = 4, .partner = 3};
+    if (_i) *touch(&t, 1, TOUCHED_FACET) = (brunt_touch_energy){.held = 1, .partner = 3};
+    put_on(&t, 1, 1), put_on(&t, 1, 1), t.candidate[8 + 1].body = 2;
+    go_on(&t);
+    ck_assert_double_eq(touch(&t, 1, TOUCHED_FACET)->held, _i ? 5 : 6);
+    ck_assert_double_eq(touch(&t, 0, TOUCHED_FACET)->held, _i ? 6 : 0);
+    ck_assert_double_eq(touch(&t, 3, TOUCHED_FACET)->held, _i ? 0 : 4);
+    brunt_node_touches_free(&t.f.touches);
 }
 END_TEST
 
@@ -155,7 +222,9 @@ int main(void) {
     tcase_add_test(tests, stays_where_others_are);
     tcase_add_loop_test(tests, goes_to_facets, 0, 2);
     tcase_add_loop_test(tests, goes_to_edges, 0, 2);
-    tcase_add_loop_test(tests, goes_to_what_is_on_its_facets, 0, 2);
+    tcase_add_test(tests, goes_on_beside_and_above);
+    tcase_add_loop_test(tests, stays_with_what_touches, 0, 4);
+    tcase_add_loop_test(tests, takes_of_one_body, 0, 2);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
