@@ -8,6 +8,16 @@
 #include "tests/support/small_scene.h"
 #include "io/scene/units.h"
 
+// The database of units is read once for some thousand scenes, where each would read it anew (tests/CMakeLists.txt).
+struct ut_system *__real_ut_read_xml(const char *path);
+struct ut_system *__wrap_ut_read_xml(const char *path);
+void __wrap_ut_free_system(struct ut_system *system);
+static struct ut_system *units;
+struct ut_system *__wrap_ut_read_xml(const char *path) {
+    return units = units ? units : __real_ut_read_xml(path);
+}
+void __wrap_ut_free_system(struct ut_system *system) { (void)system; }
+
 // What the two small scenes lack of keys with numbers.
 static const char rich_text[] =
     "brunt: 1\n"
