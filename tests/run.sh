@@ -99,16 +99,29 @@ if [ "$label" = long ]; then
 fi
 rm -rf build/hard_cases && mkdir build/hard_cases
 BRUNT_HARD_CASES=$PWD/build/hard_cases run build -LE long
-check "structure of the sources" python3 tests/structure.py check
-check "what one more thing costs" python3 tests/adding.py check
+# What takes one core each, the one list beside the other; what the first says is told when both have ended.
+said=$(mktemp)
+tally=$(mktemp)
+(
+    before="$passed $failed"
+    check "structure of the sources" python3 tests/structure.py check
+    check "what one more thing costs" python3 tests/adding.py check
+    check "list of mistakes" python3 tests/mutations.py check
+    check "format" sh tests/support/static.sh format
+    check "page of hard cases" python3 tests/hard_cases.py check build/hard_cases
+    check "installed library" sh tests/support/install.sh build
+    check "whole benchmark" sh bench/run.sh --quick
+    check "study of contact" build/bench/contact_study cubes h=1
+    echo "$before $passed $failed" | awk '{ print $3 - $1, $4 - $2 }' >"$tally"
+) >"$said" 2>&1 &
 check "one more of each thing" python3 tests/adding.py run
-check "list of mistakes" python3 tests/mutations.py check
-check "format" sh tests/support/static.sh format
 check "static checks" sh tests/support/static.sh tidy build
-check "page of hard cases" python3 tests/hard_cases.py check build/hard_cases
-check "installed library" sh tests/support/install.sh build
-check "whole benchmark" sh bench/run.sh --quick
-check "study of contact" build/bench/contact_study cubes h=1
+wait $!
+cat "$said"
+read -r good bad <"$tally" || { good=0; bad=1; }
+passed=$((passed + good))
+failed=$((failed + bad))
+rm -f "$said" "$tally"
 # among "SUITE...": the name of each suite, as ctest takes it.
 among() { echo "^($(echo "$1" | tr ' ' '|'))\$"; }
 
