@@ -58,8 +58,8 @@ static void take_shares(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-// What was claimed has gone.
-static void clear_taken(void *context, int64_t begin, int64_t end, int worker) {
+// What is left, of which what was claimed has gone.
+static void look_at_left(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const left_job *j = context;
     for (int32_t n = (int32_t)begin; n < end; n++)
@@ -68,27 +68,16 @@ static void clear_taken(void *context, int64_t begin, int64_t end, int worker) {
             if (!left) continue;
             if (left->claims) left->held = 0;
             left->claims = 0;
-        }
-}
-
-static void find_left(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    const left_job *j = context;
-    for (int32_t n = (int32_t)begin; n < end; n++)
-        for (touched what = TOUCHED_FACET; what <= TOUCHED_EDGE; what++) {
-            brunt_touch_energy *left = left_at(j->f, n, what);
-            if (!left) continue;
-            left->claims = 0;
             __atomic_store_n(&j->f->touches.left, true, __ATOMIC_RELAXED);
         }
 }
 
 void brunt_touches_go_on(const brunt_contact_context *m, brunt_node_to_facet *f) {
-    static void (*const passes[])(void *, int64_t, int64_t, int) = {take_shares, take_shares, clear_taken};
+    static void (*const passes[])(void *, int64_t, int64_t, int) = {take_shares, take_shares, look_at_left};
     const brunt_contact_surface *s = m->surface;
     left_job j = {.surface = s, .f = f};
     f->touches.left = false;
-    brunt_parallel(m->threads, s->node_count, GRAIN, find_left, &j, m->timer);
+    brunt_parallel(m->threads, s->node_count, GRAIN, look_at_left, &j, m->timer);
     for (j.round = TOUCH_CLAIM; f->touches.left && j.round < TOUCH_ROUNDS; j.round++)
         brunt_parallel(m->threads, s->node_count, GRAIN, passes[j.round], &j, m->timer);
 }
