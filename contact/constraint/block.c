@@ -5,54 +5,22 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/transpose.h"
 #include "contact/constraint/rest.h"
 
 enum { LANES = BRUNT_DOUBLES };
-#ifdef BRUNT_FLOAT
-#define EIGHT_LANES (BRUNT_LANES == 16) // as preprocessors see it
-#else
-#define EIGHT_LANES (BRUNT_LANES == 8)
-#endif
 typedef brunt_constraint_block block;
 
 // ------------------------------------------------------------------------------------------ to lanes and back
 
 typedef double quad __attribute__((vector_size(32), may_alias));
-typedef double unaligned_quad __attribute__((vector_size(32), aligned(sizeof(double)), may_alias));
-
-// Four numbers of each lane, from where it has them.
-BRUNT_INLINE void take(const double *const at[LANES], doubles out[4]) {
-#if EIGHT_LANES
-    quad r[LANES];
-    for (int l = 0; l < LANES; l++) {
-        r[l] = *(const unaligned_quad *)at[l];
-        __asm__("" : "+v"(r[l])); // whole: gcc 12 reads them one by one
-    }
-#define BOTH(l) __builtin_shufflevector(r[l], r[(l) + 4], 0, 1, 2, 3, 4, 5, 6, 7)
-    const doubles r0 = BOTH(0), r1 = BOTH(1), r2 = BOTH(2), r3 = BOTH(3);
-#undef BOTH
-    const doubles low01 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14); // x0 x1 z0 z1 x4 x5 z4 z5
-    const doubles low23 = __builtin_shufflevector(r2, r3, 0, 8, 2, 10, 4, 12, 6, 14);
-    const doubles high01 = __builtin_shufflevector(r0, r1, 1, 9, 3, 11, 5, 13, 7, 15);
-    const doubles high23 = __builtin_shufflevector(r2, r3, 1, 9, 3, 11, 5, 13, 7, 15);
-    out[0] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
-    out[1] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
-    out[2] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
-    out[3] = __builtin_shufflevector(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
-#else
-    double column[4][LANES] __attribute__((aligned(64)));
-    for (int l = 0; l < LANES; l++)
-        for (int a = 0; a < 4; a++) column[a][l] = at[l][a];
-    for (int a = 0; a < 4; a++) out[a] = doubles_load(column[a]);
-#endif
-}
 
 // Three components of each lane's place in an array of four numbers each.
 BRUNT_INLINE void gather(double (*from)[4], const int32_t at[LANES], doubles out[3]) {
     const double *place[LANES];
     doubles all[4];
     for (int l = 0; l < LANES; l++) place[l] = from[at[l]];
-    take(place, all);
+    doubles_take(place, all);
     for (int a = 0; a < 3; a++) out[a] = all[a];
 }
 
@@ -67,12 +35,12 @@ typedef struct gifts {
 } gifts;
 
 BRUNT_INLINE const double *four_of(const fours *f, int l) {
-    return f->of[EIGHT_LANES ? (l & 1) * (LANES / 2) + l / 2 : l];
+    return f->of[BRUNT_EIGHT_DOUBLES ? (l & 1) * (LANES / 2) + l / 2 : l];
 }
 BRUNT_INLINE const double *gift_of(const gifts *g, int e, int l) { return four_of(&g->of[e], l); }
 
 BRUNT_INLINE void part(fours *g, doubles x, doubles y, doubles z, doubles w) {
-#if EIGHT_LANES
+#if BRUNT_EIGHT_DOUBLES
     const doubles low = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14); // x0 y0 x2 y2 x4 y4 x6 y6
     const doubles high = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
     const doubles low_z = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -136,7 +104,7 @@ static bool take_constraints(const brunt_constraint *c, block *b) {
         normal[l] = c[l].n, facet[l] = c[l].facet + 1, friction[l] = &c[l].friction;
         b->first[l] = c[l].first;
     }
-    take(normal, first), take(facet, second), take(friction, third);
+    doubles_take(normal, first), doubles_take(facet, second), doubles_take(friction, third);
     for (int a = 0; a < 3; a++) b->n[a] = first[a];
     b->facet[0] = first[3], b->facet[1] = second[0], b->facet[2] = second[1];
     b->target = second[3], b->friction = third[0];
@@ -153,7 +121,7 @@ static bool take_entries(const brunt_constraint_set *p, int e, block *b) {
         b->dof_node[e][l] = entry->dof_node;
         weight[l] = entry->weight, gradient[l] = entry->weight + LAST_WEIGHT;
     }
-    take(weight, first), take(gradient, second);
+    doubles_take(weight, first), doubles_take(gradient, second);
     b->weight[e] = first[0];
     for (int a = 0; a < 3 && e > 0; a++) b->height_gradient[e - 1][a] = second[1 + a];
     const doubles_mask turns =

@@ -1,14 +1,11 @@
 // What a place meets of each body near it: the facets in its cell, the nearest of them, and those beside that bear,
 // too.
 #include "base/quad.h"
-#include "contact/search/nearest.h"
+#include "contact/search/candidates_parts.h"
 
 enum { AHEAD = 6 };                   // facets that are fetched meanwhile
 static const double ASKEW = -0.3;     // ... or, where nothing opposed is within ...
-static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
-static const double MARGIN = 0.125;   // mean edges: facets so much further than the nearest are looked at closely, too
-static const double CLEAR = 1e-4;     // mean edges: distances of boxes that tell of those of the facets in them
 static const double NEARLY = 2e-6;    // ... beyond that share of their squares
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a eroded surface a place is still before it
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
@@ -19,14 +16,6 @@ int32_t brunt_candidates_front(const brunt_contact_surface *s, int32_t face) {
     return front ? face : face - s->membrane.side[s->face_body[face]].faces;
 }
 
-// Of either side of a membrane: the same numbers for both.
-static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, const double x[3]) {
-    int32_t front = brunt_candidates_front(s, face);
-    brunt_closest at = brunt_closest_on_face(s, front, x);
-    if (front != face) turn_over(s, &front, &at);
-    return at;
-}
-
 int64_t brunt_candidates_cell(const brunt_node_to_facet *f, const double x[3]) {
     int64_t cell = 0;
     for (int a = 0; a < 3; a++) {
@@ -35,11 +24,6 @@ int64_t brunt_candidates_cell(const brunt_node_to_facet *f, const double x[3]) {
         cell = cell * f->cells.n[a] + (int64_t)c;
     }
     return cell;
-}
-
-static bool near_box(const double box[6], const double x[3], double by) {
-    return x[0] >= box[0] - by && x[0] <= box[3] + by && x[1] >= box[1] - by && x[1] <= box[4] + by &&
-           x[2] >= box[2] - by && x[2] <= box[5] + by;
 }
 
 static bool within(const body_box *box, const double x[3], double by) {
@@ -64,19 +48,6 @@ static bool is_among(int32_t body, const int32_t *list, int32_t count) {
         if (list[k] == body) return true;
     return false;
 }
-
-// What is looked through: the facets in the cell, or those listed when it last looked there.
-static inline const int32_t *facets_of(const brunt_node_to_facet *f, const search_query *l, int32_t *count) {
-    *count = l->beside ? l->besides : f->cells.first[l->cell + 1] - f->cells.first[l->cell];
-    return l->beside ? l->beside : f->cells.face + f->cells.first[l->cell];
-}
-
-// The two nearest facets of all, whichever way they face.
-typedef struct two_nearest {
-    int32_t face;
-    double first, second;  // squares of their distances
-    double height, square; // [m] of the place above the nearest one; square of the distance to that
-} two_nearest;
 
 // Notes a facet. Of those that are equally near, as at an edge or a corner, the one that most faces the place tells on
 // which side of the surface that is, whatever their order.
@@ -113,23 +84,6 @@ typedef struct facet_search {
     double margin;
     two_nearest *all; // notes the two nearest of any direction, as far as `margin` beyond the nearest; may be NULL
 } facet_search;
-
-// Square of the distance from x to a box.
-static inline double box_square(const double box[6], const double x[3]) {
-    double sum = 0;
-    for (int a = 0; a < 3; a++) {
-        const double below = box[a] - x[a], above = x[a] - box[3 + a], way = below > above ? below : above;
-        if (way > 0) sum += way * way;
-    }
-    return sum;
-}
-
-// Whether all in a box whose distance has the square `bound` is further than the root of `square`, and so far that
-// rounding does not matter.
-static inline bool further(const brunt_contact_surface *s, double bound, double square) {
-    const double clear = CLEAR * s->mean_edge;
-    return bound * (1 - 1e-6) > square && bound > clear * clear;
-}
 
 static inline bool beyond(const brunt_contact_surface *s, const double box[6], const double x[3], double square) {
     return further(s, box_square(box, x), square);
@@ -366,17 +320,6 @@ static void add_eroded(const brunt_contact_context *m, const brunt_node_to_facet
     }
 }
 
-// Middle surfaces of membranes stay half their thickness away from what they meet.
-static void thicken(const brunt_contact_surface *s, double half, candidate_list *out) {
-    for (int32_t q = 0; q < out->count; q++)
-        out->candidate[q].gap -= half + s->membrane.side[out->candidate[q].body].half;
-}
-
-// Whether a place is clearly before the nearest facet of all.
-static inline bool is_before(const brunt_contact_surface *s, const two_nearest *two) {
-    return two->height > 1e-6 * s->mean_edge && two->height > 0.1 * sqrt(two->square);
-}
-
 // Whether a place is clearly before the nearest facet of a body that is not the nearest of all. A membrane has no
 // inside.
 static bool is_outside(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
@@ -394,13 +337,6 @@ static bool is_outside(const brunt_contact_surface *s, const brunt_node_to_facet
         add_nearest(&two, &at, face);
     }
     return two.face >= 0 && is_before(s, &two);
-}
-
-// How far all facets but the nearest are, looked for as far as `to`.
-static inline double second_of(const brunt_contact_surface *s, const brunt_node_to_facet *f, const two_nearest *two,
-                               double to) {
-    const double second = sqrt(two->second), range = f->bodies.range < to ? f->bodies.range : to;
-    return (second < range ? second : range) * (1 - 1e-8) - TOUCH * s->mean_edge;
 }
 
 // The bodies whose boxes it is in, and of which no facet that faces it is within the root of `square`. How many.
@@ -497,100 +433,4 @@ void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_f
         find_candidates(m, f, l, guess, true, out);
     else
         find_candidates(m, f, l, guess, false, out);
-}
-
-// Lists the facets that a node with one body near it may come to before anything has moved by much, for what they are
-// among to be found without the cells; none where they are too many. Cells hold all that is within their range.
-void brunt_candidates_remember(const brunt_contact_context *m, brunt_node_to_facet *f, const search_query *l,
-                               int32_t n) {
-    const brunt_contact_surface *s = m->surface;
-    int32_t *beside = f->cache.beside[n], count = 0, all;
-    const int32_t *list = facets_of(f, l, &all);
-    f->cache.node[n].beyond = 0;
-    if (l->touches != 1 || s->membrane.side || s->renewal.eroded) return;
-    const double beyond = fmin(f->cells.range, s->motion.seen) * (1 - 1e-8);
-    for (int32_t q = 0; q < all; q++) {
-        if (s->face_body[list[q]] != l->touch[0] || !near_box(s->face_box[list[q]], l->x, beyond)) continue;
-        if (count == BRUNT_BESIDE) return;
-        beside[count++] = list[q];
-    }
-    if (count < BRUNT_BESIDE) beside[count] = -1;
-    if (count > 0) f->cache.node[n].beyond = beyond;
-}
-
-// One facet alone as the nearest of its body; there is room for many, which is not filled. Its nearest point.
-static inline const brunt_closest *take_one(nearest *one, int32_t face, int32_t body, brunt_closest at) {
-    one->body = body, one->count = 1;
-    one->square = at.square, one->root = INFINITY;
-    one->tied[0] = (tied){at, face};
-    return &one->tied[0].at;
-}
-
-// Where the facet that was the nearest still is, and none of those listed is as near: what find_candidates comes to.
-static bool find_one_among(const brunt_contact_surface *s, const brunt_node_to_facet *f, const search_query *l,
-                           int32_t face, candidate_list *out) {
-    const double range = f->bodies.range, margin = MARGIN * s->mean_edge, close = CLOSE * s->mean_edge;
-    if (face < 0 || s->face_body[face] != l->touch[0] || !s->motion.made[face] ||
-        (l->normal && -dot(s->face_normal[face], l->normal) <= OPPOSED))
-        return false;
-    nearest one;
-    const brunt_closest *at = take_one(&one, face, l->touch[0], brunt_closest_on_face(s, face, l->x));
-    const double root = tie(s, at->square);
-    if (at->square > close * close || at->square > range * range) return false;
-    two_nearest two = {face, at->square, range * range, dot(at->normal, at->d), at->square};
-    double bound[BRUNT_BESIDE]; // of squares of distances
-    int least = -1;
-    for (int32_t q = 0; q < l->besides; q++) {
-        const double *box = s->face_box[l->beside[q]];
-        const bool other = l->beside[q] != face && near_box(box, l->x, root + margin);
-        bound[q] = other ? box_square(box, l->x) : INFINITY;
-        if (other && (least < 0 || bound[q] < bound[least])) least = q;
-    }
-    // The one that may be the nearest is looked at first: most others are then known to be further.
-    for (int32_t k = -1; least >= 0 && k < l->besides; k++) {
-        const int32_t q = k < 0 ? least : k;
-        const double known = two.second > root * root ? two.second : root * root;
-        if (k == least || bound[q] == INFINITY || (k >= 0 && further(s, bound[q], known))) continue;
-        const double square = brunt_closest_on_face_within(s, l->beside[q], l->x, 0).square;
-        if (!(square > root * root)) return false;
-        two.second = square < two.second ? square : two.second;
-    }
-    const bool outside = is_before(s, &two);
-    out->count =
-        brunt_nearest_opposed(s, &one, l->normal, &out->candidate[0]) && !(out->candidate[0].gap < 0 && outside);
-    out->distance = outside ? fmin(range, sqrt(two.first)) : 0;
-    out->second = out->count ? second_of(s, f, &two, out->distance + margin) : 0;
-    out->reach = root + margin;
-    return true;
-}
-
-// What is found among the facets that were listed, where no others can have come so near as to change it: then it is
-// what the cells would give, to the last bit.
-bool brunt_candidates_among(const brunt_contact_context *m, const brunt_node_to_facet *f, search_query *l, int32_t n,
-                            candidate_list *out) {
-    const brunt_contact_surface *s = m->surface;
-    const double beyond = f->cache.node[n].beyond;
-    if (!(beyond > 0) || l->touches != 1 || s->face_body[f->cache.beside[n][0]] != l->touch[0]) return false;
-    l->beside = f->cache.beside[n], l->besides = 0;
-    while (l->besides < BRUNT_BESIDE && l->beside[l->besides] >= 0) l->besides++;
-    if (!find_one_among(s, f, l, f->cache.nearest[n], out)) find_candidates(m, f, l, f->cache.nearest[n], false, out);
-    l->beside = NULL;
-    return out->reach < beyond;
-}
-
-// The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one
-// is.
-bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
-                                    const double *normal, double least, candidate_list *out) {
-    const brunt_contact_surface *s = m->surface;
-    const int32_t face = f->cache.nearest[n];
-    if (face < 0 || !s->motion.made[face] || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
-    nearest one;
-    const brunt_closest *at = take_one(&one, face, s->face_body[face], closest_on(s, face, s->x[n]));
-    if (is_membrane(s, one.body) && !(dot(at->normal, at->d) > 0)) return false;
-    const double square = at->square, close = CLOSE * s->mean_edge;
-    if (square >= least * least || square > close * close || square > f->bodies.range * f->bodies.range) return false;
-    out->count = brunt_nearest_opposed(s, &one, normal, &out->candidate[0]) ? 1 : 0;
-    if (s->membrane.side) thicken(s, s->membrane.side[s->body[n]].half, out);
-    return true;
 }

@@ -6,8 +6,7 @@
 #include "base/parallel.h"
 #include "mpm/mpm_body.h"
 
-enum { GRAIN = 64, AHEAD = 8 };        // AHEAD: nodes whose facets are fetched meanwhile, in two steps
-static const double BESIDE = 0.05;     // mean edges: where the second facet is as near, those about are listed
+enum { GRAIN = 64, AHEAD = 8 };        // AHEAD: nodes whose facets are fetched meanwhile
 static const double CORRECTION = 0.2;  // share of a penetration that is pushed out in a step ...
 static const double RESTITUTION = 0.5; // ... but no faster than this share of the approach, so that it adds no energy
 
@@ -51,125 +50,6 @@ double brunt_node_to_facet_approach(const brunt_corners *under, const double n[3
     double along = dot(v, n);
     for (int c = 0; c < under->count; c++) along -= under->weight[c] * dot(of[under->node[c]], n);
     return along;
-}
-
-// What a node needs to look at membranes, or as one.
-static void look_at_membranes(const brunt_contact_surface *s, int32_t n, search_query *l) {
-    const brunt_side *side = &s->membrane.side[s->body[n]];
-    l->membrane = side->faces > 0, l->half = side->half, l->shallow = side->shallow;
-    if (!s->membrane.patch_first) return;
-    const int32_t first = s->membrane.patch_first[s->membrane.front[n]];
-    l->patch = s->membrane.patch_face + first,
-    l->patch_count = s->membrane.patch_first[s->membrane.front[n] + 1] - first;
-}
-
-// Keeps the master that a feature makes, which is made once.
-static void keep_master(brunt_node_to_facet *f, const brunt_contact_surface *s, facet_candidate *h, const double x[3],
-                        int worker) {
-    master_list *of = &f->nodes.masters[worker];
-    const size_t used = (size_t)of->count;
-    if (BRUNT_CAPACITY_IN(of->master, of->capacity, used + 1, used, "edges and corners near nodes", &of->error)) return;
-    h->worker = worker, h->master = of->count;
-    brunt_node_to_facet_master(s, h, x, &of->master[of->count++]);
-}
-
-static inline double least_of(double a, double b) { return b < a ? b : a; }
-
-// A query from a node; its lists of bodies, which are long, stay as they are until they are made.
-static inline void begin_query(search_query *l, int32_t box, int32_t body, const double *x, const double *normal) {
-    l->box = box, l->body = body, l->x = x, l->normal = normal;
-    l->particle = l->membrane = false;
-    l->bounds = NULL, l->beside = l->patch = NULL;
-    l->cell = BRUNT_NONE;
-    l->besides = l->touches = l->enters = l->patch_count = 0;
-    l->half = l->shallow = 0;
-}
-
-static void find_node_candidates(const search_job *j, int k, int32_t n, int worker) {
-    const brunt_contact_context *m = j->m;
-    brunt_node_to_facet *f = j->f;
-    brunt_contact_surface *s = m->surface;
-    candidate_list list, *found = &list;
-    const double *normal = s->normal[n];
-    bool faces = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
-    node_distance *cached = &f->cache.node[n];
-    const double apart = s->motion.apart[brunt_surface_chunk(s, k, n) / s->motion.group],
-                 far = least_of(f->bodies.range, s->motion.seen), since = cached->since += apart;
-    cached->beyond -= apart;
-    if (cached->distance - since > f->bodies.travel) return;
-    if (!s->motion.near[n]) {
-        *cached = (node_distance){.distance = far};
-        return;
-    }
-    if (s->membrane.front && s->membrane.front[n] != n && s->face_first[n + 1] == s->face_first[n])
-        return; // a detached nodes has one side
-    if (!(since < cached->second &&
-          brunt_candidates_still_nearest(m, f, n, faces ? normal : NULL, cached->second - since, found))) {
-        search_query l;
-        begin_query(&l, f->bodies.box_of[k], s->body[n], s->x[n], faces ? normal : NULL);
-        if (s->membrane.side) look_at_membranes(s, n, &l);
-        cached->since = 0, cached->distance = far, cached->second = 0;
-        if (!brunt_candidates_bodies(f, &l) || (l.cell = brunt_candidates_cell(f, l.x)) < 0) {
-            if (l.touches) cached->distance = 0; // near, but outside the cells
-            return;
-        }
-        if (!brunt_candidates_among(m, f, &l, n, found)) {
-            brunt_candidates_find(m, f, &l, f->cache.nearest[n], found);
-            if (found->second < BESIDE * s->mean_edge) brunt_candidates_remember(m, f, &l, n);
-        }
-        cached->distance = least_of(found->distance, far), cached->second = least_of(found->second, far);
-        if (l.touches == BRUNT_MAX_NEAR)
-            cached->distance = cached->second = 0; // there may be more bodies than were looked at
-        if (found->count) f->cache.nearest[n] = found->candidate[0].face;
-    }
-    int32_t kept = 0;
-    for (int32_t q = 0; q < found->count; q++) {
-        facet_candidate *h = &found->candidate[q];
-        if (h->gap > f->bodies.travel) continue;
-        s->output.gap[n] = least_of(s->output.gap[n], h->gap);
-        const double gap[2] = {h->gap, brunt_initial_penetration_meet(&f->penetration, &n, 1, h->gap)};
-        brunt_corners under;
-        brunt_node_to_facet_corners(s, h, s->x[n], &under);
-        const double approach = brunt_node_to_facet_approach(&under, h->n, s->v[n], s->v);
-        h->target = brunt_node_to_facet_target(
-            s, gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(&under, h->n, s->old[n], s->old) : 0, m->dt);
-        if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET) &&
-            !brunt_node_holds(&f->touches, n, TOUCHED_EDGE))
-            continue;
-        if (h->feature.any) keep_master(f, s, h, s->x[n], worker);
-        *node_candidate_of(f, s, n, kept++) = *h;
-    }
-    f->nodes.count[n] = (uint8_t)kept;
-}
-
-// What is looked at of the nearest facet.
-static inline void fetch_facet(const brunt_contact_surface *s, int32_t face) {
-    for (int c = 0; c < brunt_face_corners(s->face[face]); c++)
-        __builtin_prefetch(s->x[s->face[face][c]]), __builtin_prefetch(s->v[s->face[face][c]]);
-}
-
-static inline void fetch_nearest(const brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, int32_t end) {
-    const int32_t far = n + 2 * AHEAD < end ? f->cache.nearest[n + 2 * AHEAD] : -1,
-                  close = n + AHEAD < end ? f->cache.nearest[n + AHEAD] : -1;
-    if (far >= 0) __builtin_prefetch(s->face[far]), __builtin_prefetch(s->face_normal[far]);
-    if (close >= 0) fetch_facet(s, close);
-}
-
-static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
-    const search_job *j = context;
-    const brunt_contact_surface *s = j->m->surface;
-    const brunt_node_to_facet *f = j->f;
-    int k = 0;
-    for (int32_t n = (int32_t)begin; n < end; n++) {
-        while (s->node_range[k + 1] <= n) k++;
-        j->f->nodes.count[n] = 0;
-        if (!s->active[k]) continue;
-        fetch_nearest(f, s, n, (int32_t)end);
-        if (has_near_bodies(&f->bodies, f->bodies.box_of[k]))
-            find_node_candidates(j, k, n, worker);
-        else
-            f->cache.node[n] = (node_distance){0}; // how far it goes meanwhile is not counted
-    }
 }
 
 void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h, const double x[3],
@@ -355,19 +235,6 @@ static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_fa
     return BRUNT_OK;
 }
 
-static int search_from_nodes(search_job *j, brunt_error *error) {
-    const brunt_contact_context *m = j->m;
-    brunt_node_to_facet *f = j->f;
-    if (!f->nodes.masters && BRUNT_NEW(f->nodes.masters, m->threads, "threads that look from nodes", error))
-        return BRUNT_FAILED;
-    f->nodes.masters_count = m->threads;
-    for (int t = 0; t < m->threads; t++) f->nodes.masters[t].count = 0, f->nodes.masters[t].error.code = BRUNT_OK;
-    brunt_parallel(m->threads, m->surface->node_count, GRAIN, find_nodes, j, m->timer);
-    for (int t = 0; t < m->threads; t++)
-        if (brunt_hand_on(error, &f->nodes.masters[t].error)) return BRUNT_FAILED;
-    return BRUNT_OK;
-}
-
 // Whether body k, or one near it, is new: nothing is known of distances then.
 static bool is_anew(const brunt_contact_surface *s, const brunt_node_to_facet *f, int k) {
     bool anew = s->motion.anew[k];
@@ -383,8 +250,7 @@ static bool is_anew(const brunt_contact_surface *s, const brunt_node_to_facet *f
 static int find_between(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
                         brunt_constraint_set *constraints, brunt_error *error) {
     if (brunt_facet_cells_make(m, f, error)) return BRUNT_FAILED;
-    search_job j = {.m = m, .f = f, .constraints = constraints};
-    if (search_from_nodes(&j, error) || add_node_constraints(m, f, constraints, error) ||
+    if (brunt_node_search(m, f, error) || add_node_constraints(m, f, constraints, error) ||
         brunt_edge_edge_find(m, f, constraints, error))
         return BRUNT_FAILED;
     if (f->touches.of) brunt_touches_go_on(m, f);

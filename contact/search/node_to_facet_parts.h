@@ -101,6 +101,10 @@ int32_t brunt_candidates_front(const brunt_contact_surface *s, int32_t face);
 bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
                                     const double *normal, double least, candidate_list *out);
 
+// --- node_search.c
+// What every node meets, and its target. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_node_search(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error);
+
 // --- node_facet.c
 // gap [m]: all of it, and beyond what a place may lie in the other body (initial_penetration.h).
 double brunt_node_to_facet_target(const brunt_contact_surface *s, const double gap[2], double approach, double before,
