@@ -81,7 +81,6 @@ typedef struct brunt_constraint {
     int32_t partner;                // of the touch: number of the other body + 1, or -1 - that of the plane
     double sign; // of a body with itself 0: it gets both, and the account neither, but what they dissipate
     double area; // [m^2] it stands for in the account's area
-    int32_t tag; // the caller's
     // number + 1 of the body of material points that carries the reaction, if that is the caller's; else 0
     int32_t bearer;
     int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
@@ -91,8 +90,9 @@ typedef struct brunt_constraint {
     double scale, row_sum, row_sum_t;           // [kg] effective mass alone; [-] row sums in units of it
     double normal_impulse, friction_impulse[3]; // [N s]
     bool slips;
-    bool turns; // with its facet: some entry has a height gradient
-    bool laned; // its entries are in its lane of its block, and nowhere else
+    bool turns;  // with its facet: some entry has a height gradient
+    bool laned;  // its entries are in its lane of its block, and nowhere else
+    int32_t tag; // the caller's: read with what was found
 } brunt_constraint;
 
 enum { BRUNT_RECORDED_ACCOUNTS = 4 }; // of a chunk of points that are added up apart

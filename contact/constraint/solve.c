@@ -229,18 +229,14 @@ static void begin_nodes(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 // What constraints with friction points push and rub with are different weights. Where the two do not cross, each has
-// its own load; else both have the greater.
+// its own load; else both have the greater. Without any the load of what rubs is not looked at.
 static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         brunt_dof_node *node = &p->dof_node[s];
         double push = 0, rub = 0, both = 0;
-        if (!p->shared[s]) {
-            p->load[s][1] = p->load[s][0];
-            node->crossed = false;
-            continue;
-        }
+        if (!p->shared[s]) continue; // what was added up
         const int32_t first = p->column_first[s], last = p->column_first[s + 1];
         node->crossed = crosses(p, node, first, last);
         for (int32_t q = first; q < last; q++) {
@@ -252,15 +248,24 @@ static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
+// What the pushes on a node weigh, and what its friction does.
+typedef struct node_load {
+    double push, rub;
+} node_load;
+
+static node_load load_of(const brunt_constraint_set *p, int32_t node) {
+    return (node_load){p->load[node][0], p->load[node][p->friction_point_count > 0]};
+}
+
 // The part of an angular velocity in the row sums of an entry that pushes and of one that rubs.
 static void add_levers(const brunt_constraint_set *p, const brunt_constraint_entry *own,
                        const brunt_constraint_entry *rubs, double along[3], double across[3]) {
     const brunt_dof_node *s = &p->dof_node[own->dof_node];
-    const double *load = p->load[own->dof_node];
+    const node_load load = load_of(p, own->dof_node);
     for (int a = 0; a < 3; a++) {
         const double push = fabs(own->height_gradient[a]), rub = fabs(rubs->height_gradient[a]), both = fmax(push, rub);
-        along[a] += (s->crossed ? both : push) * load[0] * s->inverse[0];
-        across[a] += (s->crossed ? both : rub) * load[1] * s->inverse[0];
+        along[a] += (s->crossed ? both : push) * load.push * s->inverse[0];
+        across[a] += (s->crossed ? both : rub) * load.rub * s->inverse[0];
     }
 }
 
@@ -282,13 +287,13 @@ static void sum_row(const brunt_constraint_set *p, brunt_constraint *constraint)
             add_levers(p, own, rubs, along, across);
             continue;
         }
-        const double *load = p->load[own->dof_node];
+        const node_load load = load_of(p, own->dof_node);
         const double *weight = own->weight, *other = rubs->weight, turn = lever(p, own->height_gradient),
                      rub_turn = lever(p, rubs->height_gradient);
         for (int a = 0; a < 3; a++) {
             const double push = fabs(weight[a]) + turn, rub = fabs(other[a]) + rub_turn, both = fmax(push, rub);
-            along[a] += (s->crossed ? both : push) * load[0] * s->inverse[a];
-            across[a] += (s->crossed ? both : rub) * load[1] * s->inverse[a];
+            along[a] += (s->crossed ? both : push) * load.push * s->inverse[a];
+            across[a] += (s->crossed ? both : rub) * load.rub * s->inverse[a];
         }
     }
     for (int a = 0; a < 3; a++) {
@@ -503,7 +508,7 @@ static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int thre
                  bool *converges, brunt_error *error) {
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
     brunt_constraints_over_parts(p, threads, share_constraints, timer);
-    brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
+    if (p->parts != 1) brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer); // else none is shared
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double start = 0, first = 0, greatest = INFINITY, weight = 1;
     if (p->accelerated && brunt_acceleration_begin(p, error)) return BRUNT_FAILED;
