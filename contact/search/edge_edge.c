@@ -266,7 +266,7 @@ static int find_crossings(const brunt_contact_context *m, brunt_node_to_facet *f
         shared_box shared;
         if (!find_shared_box(a, b, f->bodies.travel, &shared)) continue;
         const int fem[2] = {a->fem < b->fem ? a->fem : b->fem, a->fem < b->fem ? b->fem : a->fem};
-        if (brunt_feature_edges_list(f, s, fem[0], error) || brunt_feature_edges_list(f, s, fem[1], error))
+        if (brunt_feature_edges_list(m, f, fem[0], error) || brunt_feature_edges_list(m, f, fem[1], error))
             return BRUNT_FAILED;
         if (bodies_meet(m, f, fem, &shared, constraints, error)) return BRUNT_FAILED;
     }

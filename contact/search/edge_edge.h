@@ -31,9 +31,10 @@ typedef struct edge_span {
 typedef struct near_edges {
     near_edge *near; // of the facets in cells: of body k of the surface near[first[2 k] .. first[2 k + 1])
     int32_t near_count, *first;
+    uint8_t *turns;        // of each edge of the body that is looked at: it is a feature
     feature_edge *feature; // of this step
     int32_t feature_count;
     int32_t *feature_first; // of body k: feature[feature_first[2 k] .. feature_first[2 k + 1]); -1: not listed
     edge_span *span;
-    size_t near_capacity, first_capacity, feature_capacity, feature_first_capacity, span_capacity;
+    size_t near_capacity, first_capacity, feature_capacity, feature_first_capacity, span_capacity, turns_capacity;
 } near_edges;

@@ -1,5 +1,8 @@
 // Which edges of the surfaces are features.
+#include "base/parallel.h"
 #include "contact/search/node_to_facet_parts.h"
+
+enum { GRAIN = 512 };
 
 // Cosine of 0.4 rad, the least turn of a feature: what is left unmet between edges that turn less is under a tenth of
 // an edge (0.5 tan 0.2), and surfaces of 16 facets a circle and more have none.
@@ -8,7 +11,7 @@ static const double LEAST_TURN = 0.92106099400288508;
 static const double DEPTH = 0.5;
 
 void brunt_feature_edges_free(near_edges *edges) {
-    brunt_free(edges->near), brunt_free(edges->first), brunt_free(edges->span);
+    brunt_free(edges->near), brunt_free(edges->first), brunt_free(edges->span), brunt_free(edges->turns);
     brunt_free(edges->feature), brunt_free(edges->feature_first);
 }
 
@@ -87,15 +90,31 @@ static feature_edge feature_of(const brunt_contact_surface *s, const near_edge *
     return out;
 }
 
-int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, brunt_error *error) {
+typedef struct turn_job {
+    const brunt_contact_surface *surface;
+    const near_edges *edges;
+    int32_t first;
+} turn_job;
+
+static void find_turns(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const turn_job *j = context;
+    for (int64_t i = begin; i < end; i++) j->edges->turns[i] = is_feature(j->surface, &j->edges->near[j->first + i]);
+}
+
+int brunt_feature_edges_list(const brunt_contact_context *m, brunt_node_to_facet *f, int k, brunt_error *error) {
+    const brunt_contact_surface *s = m->surface;
     near_edges *edges = &f->edges;
     if (edges->feature_first[2 * k] >= 0) return BRUNT_OK;
     edges->feature_first[2 * k] = edges->feature_count;
-    for (int32_t i = edges->first[2 * k]; i < edges->first[2 * k + 1]; i++) {
-        if (!is_feature(s, &edges->near[i])) continue;
+    const int32_t first = edges->first[2 * k], count = edges->first[2 * k + 1] - first;
+    if (RESERVE(edges, turns, count + 1, "edges near other bodies", error)) return BRUNT_FAILED;
+    brunt_parallel(m->threads, count, GRAIN, find_turns, &(turn_job){s, edges, first}, m->timer);
+    for (int32_t i = 0; i < count; i++) {
+        if (!edges->turns[i]) continue;
         const size_t used = (size_t)edges->feature_count;
         if (BRUNT_CAPACITY(edges->feature, used + 1, used, "edges that meet", error)) return BRUNT_FAILED;
-        edges->feature[edges->feature_count++] = feature_of(s, &edges->near[i]);
+        edges->feature[edges->feature_count++] = feature_of(s, &edges->near[first + i]);
     }
     edges->feature_first[2 * k + 1] = edges->feature_count;
     return BRUNT_OK;

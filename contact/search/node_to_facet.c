@@ -34,7 +34,7 @@ size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
                    f->touches.keeper_capacity + f->penetration.allowed_capacity + f->penetration.deepest_capacity +
                    n->count_capacity + n->candidate_capacity + n->dof_of_capacity + n->first_capacity +
                    n->meets_capacity + e->near_capacity + e->first_capacity + e->feature_capacity +
-                   e->feature_first_capacity + e->span_capacity + p->run_capacity;
+                   e->feature_first_capacity + e->span_capacity + e->turns_capacity + p->run_capacity;
     bytes += (size_t)n->masters_count * sizeof *n->masters + (size_t)p->list_count * sizeof *p->list;
     for (int t = 0; t < n->masters_count; t++) bytes += n->masters[t].capacity;
     for (int t = 0; t < p->list_count; t++) bytes += p->list[t].capacity;

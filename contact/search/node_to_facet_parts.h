@@ -134,7 +134,7 @@ int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface 
                             brunt_error *error);
 // Lists the features among the edges of body k, as they are in this step, unless that is done. BRUNT_OK, or
 // BRUNT_FAILED: out of memory.
-int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, brunt_error *error);
+int brunt_feature_edges_list(const brunt_contact_context *m, brunt_node_to_facet *f, int k, brunt_error *error);
 
 // --- edge_edge.c
 // Contact points where edges cross. BRUNT_OK, or BRUNT_FAILED: out of memory.

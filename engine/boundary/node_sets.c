@@ -403,7 +403,7 @@ static void account_contact(const brunt_node_set *set, const brunt_contact_surfa
     for (int32_t i = 0; i < set->node_count; i++) {
         n = advance(s->node, n, end, set->node[i]);
         if (n == end) return;
-        if (s->node[n] != set->node[i]) continue;
+        if (s->node[n] != set->node[i] || !s->motion.near[n]) continue;
         for (int a = 0; a < s->dim; a++) {
             if (!(set->holds[i] >> a & 1) || s->output.impulse[n][a] == 0) continue;
             double J[3] = {0};
