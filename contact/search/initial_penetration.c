@@ -25,9 +25,8 @@ int brunt_initial_penetration_begin(initial_penetration *p, int32_t nodes, brunt
     return BRUNT_OK;
 }
 
-double brunt_initial_penetration_meet(initial_penetration *p, const int32_t *node, int count, double gap) {
+double brunt_initial_penetration_note(initial_penetration *p, const int32_t *node, int count, double gap) {
     double allowed = 0;
-    if (!p->allowed) return gap;
     for (int i = 0; i < count; i++) {
         p->deepest[node[i]] = fmax(p->deepest[node[i]], fmax(0, -gap));
         allowed = fmax(allowed, p->allowed[node[i]]);

@@ -15,8 +15,12 @@ typedef struct initial_penetration {
 // Before the first search. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_initial_penetration_begin(initial_penetration *penetration, int32_t nodes, brunt_error *error);
 // Notes that some nodes, `count`, meet something at a gap [m]; and the gap beyond what the deepest of them may lie in
-// it.
-double brunt_initial_penetration_meet(initial_penetration *penetration, const int32_t *node, int count, double gap);
+// it. Where nothing has overlapped since the start, which is asked of all that touch: that gap.
+double brunt_initial_penetration_note(initial_penetration *penetration, const int32_t *node, int count, double gap);
+static inline double brunt_initial_penetration_meet(initial_penetration *penetration, const int32_t *node, int count,
+                                                    double gap) {
+    return penetration->allowed ? brunt_initial_penetration_note(penetration, node, count, gap) : gap;
+}
 // At the end of a step, of a surface of mean edge [m]: what has come out stays out. Frees all when nothing overlaps.
 void brunt_initial_penetration_end(initial_penetration *penetration, const brunt_contact_surface *surface);
 // After the surface was renewed. BRUNT_OK, or BRUNT_FAILED: out of memory.

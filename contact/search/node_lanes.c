@@ -8,6 +8,7 @@
 enum { LANES = BRUNT_DOUBLES };
 static const double NEAR_SPOKE = 1e-3; // of a quadrilateral's area: as in point_facet.c
 
+// Four numbers are read of each, as registers go: the arrays of a surface have a row to spare behind the last.
 BRUNT_INLINE void three_of(double (*of)[3], const int32_t at[LANES], doubles out[3]) {
     const double *place[LANES];
     doubles all[4];

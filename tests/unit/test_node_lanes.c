@@ -13,8 +13,9 @@ enum { PAIRS = 6400, NODES = 5 * PAIRS };
 // Each with a facet of its own: corners 5 i to 5 i + 3, and a node beside it.
 typedef struct scattered {
     brunt_contact_surface surface;
-    double x[NODES][3], v[NODES][3], old[NODES][3], normal[NODES][3];
-    double face_centre[PAIRS][3], face_normal[PAIRS][3], face_area[PAIRS];
+    // A row to spare, as arrays of a surface have.
+    double x[NODES + 1][3], v[NODES + 1][3], old[NODES + 1][3], normal[NODES + 1][3];
+    double face_centre[PAIRS + 1][3], face_normal[PAIRS + 1][3], face_area[PAIRS];
     int32_t face[PAIRS][4];
 } scattered;
 static scattered made;
