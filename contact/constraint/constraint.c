@@ -38,7 +38,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->part_of);
     brunt_free(p->chunk_place);
     brunt_free(p->marks);
-    brunt_free(p->shared);
+    brunt_free(p->shared), brunt_free(p->own), brunt_free(p->own_first);
     brunt_free(p->state);
     brunt_free(p->before);
     brunt_free(p->rates);

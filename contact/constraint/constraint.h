@@ -133,7 +133,8 @@ typedef struct brunt_constraint_set {
     } * chunk_place; // while chunks are divided
     uint8_t *marks;  // of each part and node: some of its constraints are in that part
     uint8_t *shared; // of each node: several parts have its constraints; what they give is added up by its column
-    size_t part_of_capacity, chunk_place_capacity, marks_capacity, shared_capacity;
+    int32_t *own, *own_first; // nodes by the part that has them alone, then the shared ones; where each begins
+    size_t part_of_capacity, chunk_place_capacity, marks_capacity, shared_capacity, own_capacity, own_first_capacity;
     // Which points press on a shared degree-of-freedom node: their entries by node, in the order of the points.
     struct brunt_constraint_column {
         int32_t constraint, entry; // whose friction point has an entry of its own, behind it

@@ -71,13 +71,21 @@ void brunt_constraints_over_parts(brunt_constraint_set *p, int threads, brunt_ta
         brunt_parallel(p->parts ? 1 : threads, chunks_of(p), 1, task, p, timer);
 }
 
+static uint8_t *marks_of(const brunt_constraint_set *p, int64_t part) {
+    return p->marks + (size_t)part * (size_t)p->dof_node_count;
+}
+
 static void mark_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t c = begin; c < end; c++) {
-        uint8_t *mark = p->marks + (size_t)p->part_of[c] * (size_t)p->dof_node_count;
-        for (int64_t k = c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k++) {
-            for (int e = 0; e < p->constraint[k].count; e++) mark[brunt_constraint_node(p, k, e)] = 1;
+        uint8_t *mark = marks_of(p, p->part_of[c]);
+        for (int64_t k = c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES) {
+            const brunt_constraint_block *b = &p->block[k / BRUNT_DOUBLES];
+            for (int e = 0; e < b->count; e++)
+                for (int l = 0; l < BRUNT_DOUBLES; l++) mark[b->dof_node[e][l]] = 1;
+            for (int64_t i = k; i < k + BRUNT_DOUBLES && i < p->constraint_count && !b->count; i++)
+                for (int e = 0; e < p->constraint[i].count; e++) mark[brunt_constraint_node(p, i, e)] = 1;
         }
     }
 }
@@ -87,9 +95,48 @@ static void find_shared(void *context, int64_t begin, int64_t end, int worker) {
     brunt_constraint_set *p = context;
     for (int64_t s = begin; s < end; s++) {
         int parts = 0;
-        for (int part = 0; part < p->parts; part++) parts += p->marks[part * (int64_t)p->dof_node_count + s];
+        for (int part = 0; part < p->parts; part++) parts += marks_of(p, part)[s];
         p->shared[s] = parts > 1;
     }
+}
+
+// How many nodes each part has alone, and lists them.
+static void count_own(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t part = begin; part < end; part++) {
+        const uint8_t *mark = marks_of(p, part);
+        int32_t count = 0;
+        for (int32_t s = 0; s < p->dof_node_count; s++) count += mark[s] & !p->shared[s];
+        p->own_first[part + 1] = count;
+    }
+}
+
+static void list_own(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t part = begin; part < end; part++) {
+        const uint8_t *mark = marks_of(p, part);
+        int32_t at = p->own_first[part];
+        for (int32_t s = 0; s < p->dof_node_count; s++)
+            if (mark[s] && !p->shared[s]) p->own[at++] = s;
+    }
+}
+
+// Nodes by the part that has them alone, then those that are shared.
+static int list_nodes(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
+    if (BRUNT_CAPACITY(p->own, (size_t)p->dof_node_count + 1, 0, "nodes of parts", error) ||
+        BRUNT_CAPACITY(p->own_first, (size_t)p->parts + 2, 0, "parts of contact points", error))
+        return BRUNT_FAILED;
+    brunt_parallel_each(threads, p->parts, count_own, p, timer);
+    p->own_first[0] = 0;
+    for (int part = 0; part < p->parts; part++) p->own_first[part + 1] += p->own_first[part];
+    brunt_parallel_each(threads, p->parts, list_own, p, timer);
+    int32_t at = p->own_first[p->parts];
+    for (int32_t s = 0; s < p->dof_node_count; s++)
+        if (p->shared[s]) p->own[at++] = s;
+    p->own_first[p->parts + 1] = at;
+    return BRUNT_OK;
 }
 
 int brunt_constraints_share_all(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
@@ -116,5 +163,6 @@ int brunt_constraints_make_parts(brunt_constraint_set *p, int threads, brunt_tim
     memset(p->marks, 0, marks);
     brunt_constraints_over_parts(p, threads, mark_nodes, timer);
     brunt_parallel(threads, p->dof_node_count, GRAIN, find_shared, p, timer);
+    if (list_nodes(p, threads, timer, error)) return BRUNT_FAILED;
     return brunt_constraints_make_columns(p, threads, timer, error);
 }

@@ -432,21 +432,35 @@ static quad column_sum(const brunt_constraint_set *p, int64_t s) {
     return sum;
 }
 
+static inline void move_dof_node(const brunt_constraint_set *p, int64_t s) {
+    const quad sum = p->shared[s] ? column_sum(p, s) : load_quad(p->sum[s]), zero = {0};
+    if (p->still > 0 && sum[0] == 0 && sum[1] == 0 && sum[2] == 0) {
+        p->stirred[s] = false;
+        return;
+    }
+    const quad was = load_quad(p->now[s]), now = was + sum * load_quad(p->inverse[s]), by = now - was,
+               received = load_quad(p->received[s]) + sum;
+    if (p->still > 0) brunt_node_stirs(p, s, sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]));
+    memcpy(p->sum[s], &zero, sizeof zero);
+    memcpy(p->now[s], &now, sizeof now), memcpy(p->received[s], &received, sizeof received);
+    if (p->accelerated) carry_on(p->momentum, p->now[s], p->received[s], &p->dof_past[s]);
+}
+
 static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_constraint_set *p = context;
-    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
-        const quad sum = p->shared[s] ? column_sum(p, s) : load_quad(p->sum[s]), zero = {0};
-        if (p->still > 0 && sum[0] == 0 && sum[1] == 0 && sum[2] == 0) {
-            p->stirred[s] = false;
-            continue;
-        }
-        const quad was = load_quad(p->now[s]), now = was + sum * load_quad(p->inverse[s]), by = now - was,
-                   received = load_quad(p->received[s]) + sum;
-        if (p->still > 0) brunt_node_stirs(p, s, sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]));
-        memcpy(p->sum[s], &zero, sizeof zero);
-        memcpy(p->now[s], &now, sizeof now), memcpy(p->received[s], &received, sizeof received);
-        if (p->accelerated) carry_on(p->momentum, p->now[s], p->received[s], &p->dof_past[s]);
+    const brunt_constraint_set *p = context;
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) move_dof_node(p, s);
+}
+
+// Those of parts, each by the thread that has swept over it and has them in its cache; with them as many of the shared.
+static void move_own_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const brunt_constraint_set *p = context;
+    const int64_t shared = p->own_first[p->parts], count = p->own_first[p->parts + 1] - shared;
+    for (int64_t part = begin; part < end; part++) {
+        for (int64_t i = p->own_first[part]; i < p->own_first[part + 1]; i++) move_dof_node(p, p->own[i]);
+        for (int64_t i = count * part / p->parts; i < count * (part + 1) / p->parts; i++)
+            move_dof_node(p, p->own[shared + i]);
     }
 }
 
@@ -481,7 +495,10 @@ static void finish_chunks(void *context, int64_t begin, int64_t end, int worker)
 }
 
 void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *timer) {
-    brunt_parallel(threads, (p->dof_node_count + GRAIN - 1) / GRAIN, 1, move_dof_nodes, p, timer);
+    if (p->parts > 1)
+        brunt_parallel_each(threads, p->parts, move_own_nodes, p, timer);
+    else
+        brunt_parallel(threads, (p->dof_node_count + GRAIN - 1) / GRAIN, 1, move_dof_nodes, p, timer);
 }
 
 // Constraints have given nothing yet.

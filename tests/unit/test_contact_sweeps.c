@@ -245,7 +245,8 @@ static void make_crowd(brunt_constraint_set *p, brunt_impulse_account *account, 
             s->v[a] = s->old[a] = i < SHEET ? 0.1 * some(a + i) : some(3 * i + a) - (a == 2), s->inverse[a] = some(i);
     }
     for (int k = 0; k < MANY; k++) {
-        const int facet = k / ABOVE_EACH % (ROW * ROW), x = facet % ROW, y = facet / ROW;
+        const int facet = (k + 2) / ABOVE_EACH % (ROW * ROW), x = facet % ROW,
+                  y = facet / ROW; // blocks are of two, too
         const double u = some(2 * k), v = some(5 * k), side[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
         ck_assert_int_eq(brunt_constraints_add(p, NULL), k);
         brunt_constraint *point = &p->constraint[k];
