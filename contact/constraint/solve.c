@@ -305,9 +305,7 @@ static void sum_row(const brunt_constraint_set *p, brunt_constraint *constraint)
     if (constraint->spring > 0) constraint->least = spring_impulse(p, constraint);
 }
 
-static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    brunt_constraint_set *p = context;
+static void sum_rows(brunt_constraint_set *p, int64_t begin, int64_t end) {
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k = after(p, k)) {
         if (block_at(p, k))
             brunt_block_sum_rows(p, block_at(p, k));
@@ -410,6 +408,11 @@ static void solve_chunks(void *context, int64_t begin, int64_t end, int worker) 
         p->changed[c] = greatest;
         if (p->accelerated) p->turned_back[c] = back;
     }
+}
+
+// The first sweep, while the rows that are summed up are at hand.
+static void begin_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    for (int64_t c = begin; c < end; c++) sum_rows(context, c, c + 1), solve_chunks(context, c, c + 1, worker);
 }
 
 // The velocities that go with the impulses the next sweep begins with.
@@ -526,13 +529,12 @@ static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int thre
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
     brunt_constraints_over_parts(p, threads, share_constraints, timer);
     if (p->parts != 1) brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer); // else none is shared
-    brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double start = 0, first = 0, greatest = INFINITY, weight = 1;
     if (p->accelerated && brunt_acceleration_begin(p, error)) return BRUNT_FAILED;
     if (brunt_rest_begin(p, error)) return BRUNT_FAILED;
     p->sweeps = 0;
     while (p->sweeps < sweeps && !(greatest <= tolerance * first)) {
-        brunt_constraints_over_parts(p, threads, solve_chunks, timer);
+        brunt_constraints_over_parts(p, threads, p->sweeps ? solve_chunks : begin_chunks, timer);
         p->sweeps++;
         greatest = 0;
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
