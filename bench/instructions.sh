@@ -5,8 +5,8 @@
 #
 # One line for each dress of tests/support/cost_scene.c (default: plain pic flip cubic dim2 gravity plastic wall met hex8 tet4
 # hex8_viscous hex8_met hex8_on_plane): instructions of a step there and here, and their ratio. Both engines are built for any
-# machine, as valgrind does not know every instruction of every one; the steps' own cost is the difference of two runs of different
-# length. Counts of one compiler do not vary from run to run: a ratio off 1 is a change. Some six minutes, most of it to build.
+# machine, as valgrind does not know every instruction of every one. Counts of one compiler do not vary from run to run: a ratio off 1
+# is a change. Some six minutes, most of it to build.
 # Exit codes: 0, 64 bad usage, else that of what failed.
 set -eu
 [ $# -ge 1 ] || { sed -n '2,/^set -eu/p' "$0" | sed -n 's/^# \{0,1\}//p' >&2; exit 64; }
@@ -27,22 +27,9 @@ mkdir "$work/there" "$work/here"
 (cd "$other" && BRUNT=$work/there/brunt COST_SCENE=$here/tests/support/cost_scene.c sh "$here/tests/support/cost_build.sh" "$work/there")
 BRUNT=$work/here/brunt sh tests/support/cost_build.sh "$work/here"
 
-# Instructions of a run of $3 steps in the dress $2, in the folder $1.
-count() {
-    valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work/$1/cost_scene" "$2" "$3" 2>"$work/log" || {
-        cat "$work/log" >&2
-        exit 1
-    }
-    sed -n 's/.*Collected : *//p' "$work/log"
-}
-
-step() {
-    echo "$(((($(count "$1" "$2" 24)) - ($(count "$1" "$2" 4))) / 20))"
-}
-
 printf '%-16s %14s %14s %8s\n' dress there here ratio
 for dress; do
-    before=$(step there "$dress")
-    now=$(step here "$dress")
+    before=$(sh tests/support/cost_count.sh "$work/there" "$dress")
+    now=$(sh tests/support/cost_count.sh "$work/here" "$dress")
     echo "$dress $before $now" | awk '{ printf "%-16s %14d %14d %8.4f\n", $1, $2, $3, $3 / $2 }'
 done
