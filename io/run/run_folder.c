@@ -120,7 +120,7 @@ int brunt_run_folder_prepare(brunt_output_folder *folder, const brunt_run_option
     if (!status && options->resume) {
         brunt_output_remove_leftovers(folder);
         unlinkat(folder->folder, "summary.json", 0); // it is of the leg before, which had come to an end
-    } else if (!status) {
+    } else if (!status && folder->count) {           // of a run before
         status = brunt_output_clear(folder, stays, BRUNT_COUNT(stays), error);
         if (!status) status = brunt_output_list(folder, files, FILES, error);
     }
