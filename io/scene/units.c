@@ -57,6 +57,62 @@ static const quantity quantities[] = {
     {"a luminous intensity", "cd"},
 };
 
+// What most scenes are written in, a value of it times and over what in SI base units as the database names them: to
+// read that takes longer than all else before the first step.
+typedef struct usual_unit {
+    const char *unit, *base;
+    double times, over;
+} usual_unit;
+
+static const usual_unit usual_units[] = {
+    {"1", "1", 1, 1},
+    {"m", "m", 1, 1},
+    {"km", "m", 1e3, 1},
+    {"cm", "m", 1, 1e2},
+    {"mm", "m", 1, 1e3},
+    {"um", "m", 1, 1e6},
+    {"nm", "m", 1, 1e9},
+    {"s", "s", 1, 1},
+    {"ms", "s", 1, 1e3},
+    {"us", "s", 1, 1e6},
+    {"ns", "s", 1, 1e9},
+    {"1/s", "s-1", 1, 1},
+    {"kg", "kg", 1, 1},
+    {"g", "kg", 1, 1e3},
+    {"K", "K", 1, 1},
+    {"m/s", "m.s-1", 1, 1},
+    {"km/s", "m.s-1", 1e3, 1},
+    {"mm/s", "m.s-1", 1, 1e3},
+    {"m/s^2", "m.s-2", 1, 1},
+    {"kg/m^3", "m-3.kg", 1, 1},
+    {"g/cm^3", "m-3.kg", 1e3, 1},
+    {"N", "m.kg.s-2", 1, 1},
+    {"kN", "m.kg.s-2", 1e3, 1},
+    {"Pa", "m-1.kg.s-2", 1, 1},
+    {"kPa", "m-1.kg.s-2", 1e3, 1},
+    {"MPa", "m-1.kg.s-2", 1e6, 1},
+    {"GPa", "m-1.kg.s-2", 1e9, 1},
+    {"J", "m2.kg.s-2", 1, 1},
+    {"mJ", "m2.kg.s-2", 1, 1e3},
+    {"kJ", "m2.kg.s-2", 1e3, 1},
+    {"W", "m2.kg.s-3", 1, 1},
+};
+
+// NULL: the database has it, or nothing has.
+static const usual_unit *find_usual(const char *unit) {
+    for (size_t i = 0; i < sizeof usual_units / sizeof *usual_units; i++)
+        if (strcmp(usual_units[i].unit, unit) == 0) return &usual_units[i];
+    return NULL;
+}
+
+// False where the result is no number; its words are the database's.
+static bool convert_usual(const usual_unit *from, double *value) {
+    const double result = *value * from->times / from->over;
+    if (!isfinite(result)) return false;
+    *value = result;
+    return true;
+}
+
 brunt_units *brunt_units_open(void) { return brunt_alloc(sizeof(brunt_units)); }
 
 void brunt_units_close(brunt_units *units) {
@@ -219,6 +275,8 @@ static bool finish(ut_unit *from, ut_unit *to, double *value, const char *unit, 
 bool brunt_units_convert(brunt_units *units, const char *unit, const char *wanted, double *value, char *message,
                          size_t size) {
     if (strcmp(unit, wanted) == 0) return true;
+    const usual_unit *usual = find_usual(unit), *si = usual ? find_usual(wanted) : NULL;
+    if (si && si->times == si->over && strcmp(usual->base, si->base) == 0 && convert_usual(usual, value)) return true;
     ut_error_message_handler handler = silence();
     bool done = false;
     char want[96], why[160] = "";
@@ -250,8 +308,9 @@ bool brunt_units_convert(brunt_units *units, const char *unit, const char *wante
 
 bool brunt_units_to_si(brunt_units *units, const char *unit, double *value, char base[BRUNT_UNIT_LENGTH], char *message,
                        size_t size) {
-    snprintf(base, BRUNT_UNIT_LENGTH, "1");
-    if (strcmp(unit, "1") == 0) return true;
+    const usual_unit *usual = find_usual(unit);
+    snprintf(base, BRUNT_UNIT_LENGTH, "%s", usual ? usual->base : "1");
+    if (usual && convert_usual(usual, value)) return true;
     ut_error_message_handler handler = silence();
     bool done = false;
     ut_unit *from = parse(units, unit, message, size);

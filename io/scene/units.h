@@ -8,7 +8,8 @@ typedef struct brunt_units brunt_units;
 
 enum { BRUNT_UNIT_LENGTH = 48 }; // longest unit that is looked at, with its ending zero
 
-// The units database is read when the first unit that is not already the wanted one is met. NULL: out of memory.
+// The units database is read when the first unit is met that is neither the wanted one nor one of the usual. NULL: out
+// of memory.
 brunt_units *brunt_units_open(void);
 void brunt_units_close(brunt_units *units);
 

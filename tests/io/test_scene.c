@@ -567,6 +567,43 @@ START_TEST(units) {
 }
 END_TEST
 
+// What scenes are mostly written in is read without the database, and as by it: "(mm)" is not looked for before.
+START_TEST(usual_units) {
+    static const char *const rows[][2] = {
+        {"m", "m"},      {"km", "m"},     {"cm", "m"},        {"mm", "m"},          {"um", "m"},
+        {"nm", "m"},     {"s", "s"},      {"ms", "s"},        {"us", "s"},          {"ns", "s"},
+        {"1/s", "1/s"},  {"kg", "kg"},    {"g", "kg"},        {"K", "K"},           {"m/s", "m/s"},
+        {"km/s", "m/s"}, {"mm/s", "m/s"}, {"m/s^2", "m/s^2"}, {"kg/m^3", "kg/m^3"}, {"g/cm^3", "kg/m^3"},
+        {"N", "N"},      {"kN", "N"},     {"Pa", "Pa"},       {"kPa", "Pa"},        {"MPa", "Pa"},
+        {"GPa", "Pa"},   {"J", "J"},      {"mJ", "J"},        {"kJ", "J"},          {"W", "W"}};
+    enum { ROWS = sizeof rows / sizeof *rows };
+    brunt_units *with = brunt_units_open(), *without = brunt_units_open();
+    double value = 1;
+    char base[2][BRUNT_UNIT_LENGTH], message[320] = "", unit[32];
+    ck_assert(brunt_units_convert(with, "inch", "m", &value, message, sizeof message)); // it is read now
+    setenv("UDUNITS2_XML_PATH", "/nowhere/units.xml", 1);
+    for (int i = 0; i < ROWS * 100; i++) {
+        const char *const *row = rows[i % ROWS];
+        const double given = i < ROWS ? 1 : i * 0.1371;
+        double a = given, b = given;
+        snprintf(unit, sizeof unit, "(%s)", row[0]);
+        ck_assert_msg(brunt_units_convert(without, row[0], row[1], &a, message, sizeof message), "%s", message);
+        ck_assert_msg(brunt_units_convert(with, unit, row[1], &b, message, sizeof message), "%s", message);
+        ck_assert_msg(a == b, "%s: %.17g, by the database %.17g", row[0], a, b);
+        a = b = given;
+        ck_assert_msg(brunt_units_to_si(without, row[0], &a, base[0], message, sizeof message), "%s", message);
+        ck_assert_msg(brunt_units_to_si(with, unit, &b, base[1], message, sizeof message), "%s", message);
+        ck_assert_msg(a == b, "%s: %.17g, by the database %.17g", row[0], a, b);
+        ck_assert_str_eq(base[0], base[1]);
+    }
+    ck_assert(!brunt_units_convert(without, "inch", "m", &value, message, sizeof message));
+    ck_assert_ptr_nonnull(strstr(message, "database"));
+    unsetenv("UDUNITS2_XML_PATH");
+    brunt_units_close(without);
+    brunt_units_close(with);
+}
+END_TEST
+
 START_TEST(overrides) {
     const char *sets[] = {"time.end=0.2 ms",           "bodies.rod.velocity[2]=-50",    "boundaries[0].friction=0.1",
                           "boundaries.1.until=20 us",  "contact.initial_overlap=allow", "output.fields=[pressure]",
@@ -883,6 +920,7 @@ int main(void) {
     tcase_add_test(tcase, mesh_files);
     tcase_add_test(tcase, output_and_measures);
     tcase_add_test(tcase, units);
+    tcase_add_test(tcase, usual_units);
     tcase_add_test(tcase, overrides);
     tcase_add_test(tcase, shares_of_transfers);
     tcase_add_test(tcase, share_of_flip_is_of_a_time);
