@@ -125,17 +125,23 @@ static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
     if (world->clock.time >= world->settings.end)
         return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
     char reason[240];
-    snprintf(reason, sizeof reason,
-             "the stable step is %.4g s: something moves, or its waves run, too fast to be computed with", stable);
-    if (!(dt > 0)) return brunt_fail_step(&world->clock, NULL, error, reason);
-    snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
-             world->settings.given.least_step);
-    if (stable < world->settings.given.least_step) return brunt_fail_short(world, stable, error, reason);
-    snprintf(reason, sizeof reason,
-             "the fixed step of %.6g s is larger than the stable one, %.6g s; time.cfl, a share of the stable one, is "
-             "what explicit steps go by where it is given beside time.step",
-             world->settings.fixed_step, stable);
-    if (world->settings.fixed_step > 0 && dt > stable) return brunt_fail_short(world, stable, error, reason);
+    if (!(dt > 0)) {
+        snprintf(reason, sizeof reason,
+                 "the stable step is %.4g s: something moves, or its waves run, too fast to be computed with", stable);
+        return brunt_fail_step(&world->clock, NULL, error, reason);
+    }
+    if (stable < world->settings.given.least_step) {
+        snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
+                 world->settings.given.least_step);
+        return brunt_fail_short(world, stable, error, reason);
+    }
+    if (world->settings.fixed_step > 0 && dt > stable) {
+        snprintf(reason, sizeof reason,
+                 "the fixed step of %.6g s is larger than the stable one, %.6g s; time.cfl, a share of the stable one, "
+                 "is what explicit steps go by where it is given beside time.step",
+                 world->settings.fixed_step, stable);
+        return brunt_fail_short(world, stable, error, reason);
+    }
     if (world->clock.time + dt == world->clock.time)
         return brunt_fail_step(&world->clock, NULL, error, "the stable step has become too small to advance the time");
     return BRUNT_OK;
