@@ -8,6 +8,7 @@
 #include "app/app.h"
 #include "base/array.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "io/output/history.h"
 #include "io/output/parts.h"
 #include "io/performance/machine.h"
@@ -422,6 +423,7 @@ int cmd_check(int argc, char **argv) {
     int status = app_parse(argc, argv, "brunt check SCENE [-t THREADS] [--quick] [--set PATH=VALUE]...",
                            APP_THREADS | APP_SET | APP_QUICK, true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
+    brunt_parallel_adapt(true); // as the run will
     brunt_scene scene;
     status = app_read_scene(&arguments, &scene);
     if (status) return status;
