@@ -55,8 +55,7 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
     const double target = j->speed - fmax(gap + room, 0) / j->m->dt;
     brunt_particle_nodes under;
     double v[3], approach = 0;
-    brunt_particle_nodes_find(j->body, b, s, NULL, &under);
-    brunt_particle_nodes_velocity(&under, dim, BRUNT_NODE_VELOCITY, v);
+    brunt_particle_velocity(j->body, b, s, BRUNT_NODE_VELOCITY, v);
     for (int a = 0; a < dim; a++) approach += plane->normal[a] * v[a];
     if (!(spring > 0 && gap < 0) && approach > target + 1e-6 * (double)j->body->grid.h / j->m->dt) return BRUNT_OK;
     const int32_t at = brunt_constraints_add(j->set, error);
@@ -68,6 +67,7 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
     constraint->gap = gap, constraint->target = target - j->speed, constraint->friction = plane->friction;
     constraint->spring = spring;
     constraint->account = &j->boundary->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
+    brunt_particle_nodes_find(j->body, b, s, NULL, &under);
     if (brunt_particle_dofs_enter(j->body, &under, 1, j->dofs, j->set, error)) return BRUNT_FAILED;
     return plane->friction > 0 ? add_friction_point(j, b, s, x, distance, error) : BRUNT_OK;
 }
