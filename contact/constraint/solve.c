@@ -81,8 +81,26 @@ static void apply_transpose(const brunt_constraint *constraint, const brunt_cons
     for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + rise * constraint->facet[a];
 }
 
+// What constraints that do not turn give (brunt_constraint_give).
+static void give_plain(const brunt_constraint_set *p, const brunt_constraint *constraint, const double push[3],
+                       const double rub[3]) {
+    const quad pushed = {push[0], push[1], push[2]}, rubbed = {rub[0], rub[1], rub[2]};
+    for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+        const int32_t s = p->entry[e].dof_node;
+        const quad out = load_quad(p->entry[e].weight) * pushed, sum = p->shared[s] ? out : load_quad(p->sum[s]) + out;
+        memcpy(p->shared[s] ? p->given[e] : p->sum[s], &sum, sizeof sum);
+        if (!constraint->friction_point) continue;
+        const quad apart = load_quad(p->entry[e + constraint->count].weight) * rubbed;
+        memcpy(p->given[e + constraint->count], &apart, sizeof apart);
+    }
+}
+
 void brunt_constraint_give(const brunt_constraint_set *p, const brunt_constraint *constraint, const double push[3],
                            const double rub[3]) {
+    if (!constraint->turns) {
+        give_plain(p, constraint, push, rub);
+        return;
+    }
     for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
         const int32_t s = p->entry[e].dof_node;
         double out[3];
