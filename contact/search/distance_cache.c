@@ -28,7 +28,7 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
         f->cache.node[n] = (node_distance){0};
     }
     memcpy(f->cache.nearest, f->cache.spare, (size_t)s->node_count * sizeof *f->cache.nearest);
-    f->cells.made = false;
+    f->cells.made = f->edges.beyond_known = false;
     return BRUNT_OK;
 }
 
@@ -57,6 +57,7 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_con
     brunt_node_to_facet *f = *node_to_facet;
     if (brunt_distance_cache_fit(f, s->node_count, 0, error)) return BRUNT_FAILED;
     f->cells.made = f->cells.made && !s->renewal.change.any;
+    f->edges.beyond_known = f->edges.beyond_known && !s->renewal.change.any;
     const double moved = *in++;
     for (int k = 0; k < s->fem_count; k++) s->motion.was_active[k] = *in++ != 0;
     for (int k = 0; k < s->fem_count; k++)

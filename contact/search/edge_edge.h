@@ -31,10 +31,13 @@ typedef struct edge_span {
 typedef struct near_edges {
     near_edge *near; // of the facets in cells: of body k of the surface near[first[2 k] .. first[2 k + 1])
     int32_t near_count, *first;
+    int32_t (*beyond)[4];  // of each facet, as long as the surface has the same: what is beyond its edges; 0: not known
+    bool beyond_known;     // it is of the surface as it is
     uint8_t *turns;        // of each edge of the body that is looked at: it is a feature
     feature_edge *feature; // of this step
     int32_t feature_count;
     int32_t *feature_first; // of body k: feature[feature_first[2 k] .. feature_first[2 k + 1]); -1: not listed
     edge_span *span;
-    size_t near_capacity, first_capacity, feature_capacity, feature_first_capacity, span_capacity, turns_capacity;
+    size_t near_capacity, first_capacity, feature_capacity, feature_first_capacity, span_capacity, turns_capacity,
+        beyond_capacity;
 } near_edges;

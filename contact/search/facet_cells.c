@@ -2,7 +2,7 @@
 #include "base/quad.h"
 #include "contact/search/node_to_facet_parts.h"
 
-enum { CHUNK = 1024 };
+enum { CHUNK = 1024, RUN = 256, GRAIN = 4, SLABS = 4 };
 static const double MARGIN = 0.125; // mean edges: how far facets may move before the cells are made anew
 static const double CELL = 0.75;    // mean edges: of the cells that facets are found in ...
 static const double COARSE = 0.25;  // ... of how far they are looked for, where all is fast
@@ -32,31 +32,182 @@ static void cell_range(const brunt_node_to_facet *f, const double low[3], const 
     }
 }
 
-// Counts, or lists, the facets of every cell; with them their edges. BRUNT_OK, or BRUNT_FAILED: out of memory.
-static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, bool list, brunt_error *error) {
-    const brunt_contact_surface *s = m->surface;
-    const double by = f->cells.range + MARGIN * s->mean_edge;
-    for (int k = 0; k < s->fem_count; k++) {
-        if (f->bodies.first[f->bodies.box_of[k] + 1] == f->bodies.first[f->bodies.box_of[k]]) continue;
-        for (int32_t face = s->face_range[k]; face < s->face_end[k]; face++) { // of a membrane, for both its sides
-            const double *low = s->face_box[face], *high = low + 3;
-            int32_t from[3], to[3];
-            if (!brunt_broad_phase_in_range(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
-            for (int c = 0; c < 4 && s->face[face][c] >= 0; c++) f->cells.near[s->face[face][c]] = true;
-            if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face, error)) return BRUNT_FAILED;
-            cell_range(f, low, high, by, from, to);
-            for (int32_t x = from[0]; x <= to[0]; x++)
-                for (int32_t y = from[1]; y <= to[1]; y++)
-                    for (int32_t z = from[2]; z <= to[2]; z++) {
-                        size_t cell =
-                            ((size_t)x * (size_t)f->cells.n[1] + (size_t)y) * (size_t)f->cells.n[2] + (size_t)z;
-                        if (list)
-                            f->cells.face[f->cells.first[cell + 1]++] = face;
-                        else
-                            f->cells.first[cell + 2]++;
-                    }
-        }
+typedef struct list_job {
+    const brunt_contact_surface *surface;
+    brunt_node_to_facet *f;
+    double by;           // [m] from the cells to their facets
+    int32_t slabs;       // that the rows of cells are cut into, each of which is one thread's
+    int32_t *slab_count; // of each: facets in its cells
+} list_job;
+
+// Runs have so many facets of one body, but for its last one: number of the first of body k, and of all.
+static int32_t first_run(const brunt_contact_surface *s, int k) { return s->face_range[k] / RUN + k; }
+
+static int body_of_run(const brunt_contact_surface *s, int32_t run) {
+    int low = 0, high = s->fem_count;
+    while (high - low > 1) {
+        const int middle = low + (high - low) / 2;
+        *(first_run(s, middle) <= run ? &low : &high) = middle;
     }
+    return low;
+}
+
+// The facets of body k from `begin` on that are to be listed; several threads may mark a node.
+static void take_facets(const list_job *j, int k, int32_t begin, int32_t end, facet_run *run) {
+    const brunt_contact_surface *s = j->surface;
+    brunt_node_to_facet *f = j->f;
+    const int32_t box = f->bodies.box_of[k], rows = f->cells.n[1];
+    for (int32_t face = begin; face < end; face++) {
+        const double *low = s->face_box[face], *high = low + 3;
+        if (!brunt_broad_phase_in_range(f, box, low, high, 2 * j->by)) continue;
+        for (int c = 0; c < 4 && s->face[face][c] >= 0; c++)
+            __atomic_store_n(&f->cells.near[s->face[face][c]], true, __ATOMIC_RELAXED);
+        listed_facet *one = &f->cells.listed[run->first + run->count++];
+        one->face = face;
+        cell_range(f, low, high, j->by, one->from, one->to);
+        const int32_t from = one->from[0] * rows + one->from[1], to = one->to[0] * rows + one->to[1];
+        run->from = from < run->from ? from : run->from, run->to = to > run->to ? to : run->to;
+        if (s->dim == 3) run->edge_count += brunt_feature_edges_of(&f->edges, s, k, face, NULL);
+    }
+}
+
+static void take_runs(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const list_job *j = context;
+    const brunt_contact_surface *s = j->surface;
+    int k = body_of_run(s, (int32_t)begin);
+    for (int32_t r = (int32_t)begin; r < end; r++) {
+        while (k + 1 < s->fem_count && first_run(s, k + 1) <= r) k++;
+        const int32_t first = s->face_range[k] + (r - first_run(s, k)) * RUN, last = first + RUN;
+        facet_run *run = &j->f->cells.run[r];
+        *run = (facet_run){.first = first, .from = INT32_MAX, .to = -1};
+        if (has_near_bodies(&j->f->bodies, j->f->bodies.box_of[k])) // of a membrane, its front for both its sides
+            take_facets(j, k, first, last < s->face_end[k] ? last : s->face_end[k], run);
+    }
+}
+
+static void add_edges(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const list_job *j = context;
+    brunt_node_to_facet *f = j->f;
+    int k = body_of_run(j->surface, (int32_t)begin);
+    for (int32_t r = (int32_t)begin; r < end; r++) {
+        const facet_run *run = &f->cells.run[r];
+        while (k + 1 < j->surface->fem_count && first_run(j->surface, k + 1) <= r) k++;
+        near_edge *to = f->edges.near + run->first_edge;
+        for (int32_t i = 0; i < run->count && run->edge_count; i++)
+            to += brunt_feature_edges_of(&f->edges, j->surface, k, f->cells.listed[run->first + i].face, to);
+    }
+}
+
+// Lists the facets that are near other bodies, and their edges, in the order of the surface. BRUNT_OK, or BRUNT_FAILED:
+// out of memory.
+static int list_facets(const brunt_contact_context *m, list_job *j, brunt_error *error) {
+    const brunt_contact_surface *s = j->surface;
+    brunt_node_to_facet *f = j->f;
+    const int32_t runs = first_run(s, s->fem_count);
+    if (RESERVE(&f->cells, listed, s->face_count + 1, "facets near other bodies", error) ||
+        RESERVE(&f->cells, run, runs + 1, "runs of facets", error) || brunt_feature_edges_begin(f, s, error))
+        return BRUNT_FAILED;
+    brunt_parallel(m->threads, runs, GRAIN, take_runs, j, m->timer);
+    f->edges.near_count = 0;
+    for (int k = 0; k < s->fem_count; k++) {
+        f->edges.first[2 * k] = f->edges.near_count;
+        for (int32_t r = first_run(s, k); r < first_run(s, k + 1); r++) {
+            f->cells.run[r].first_edge = f->edges.near_count;
+            f->edges.near_count += f->cells.run[r].edge_count;
+        }
+        f->edges.first[2 * k + 1] = f->edges.near_count;
+    }
+    if (RESERVE(&f->edges, near, f->edges.near_count + 1, "edges near other bodies", error)) return BRUNT_FAILED;
+    if (f->edges.near_count) brunt_parallel(m->threads, runs, GRAIN, add_edges, j, m->timer);
+    return BRUNT_OK;
+}
+
+static inline int32_t rows_of(const facet_cells *cells) { return cells->n[0] * cells->n[1]; }
+
+// Counts, or (`face` is there) lists, the facets in the cells of the rows begin .. end, whose next places are `next`.
+static void go_through(const list_job *j, int32_t begin, int32_t end, int32_t *next, int32_t *face) {
+    const facet_cells *cells = &j->f->cells;
+    const int32_t runs = first_run(j->surface, j->surface->fem_count), rows = cells->n[1], deep = cells->n[2];
+    for (int32_t r = 0; r < runs; r++) {
+        const facet_run *run = &cells->run[r];
+        if (run->from >= end || run->to < begin) continue;
+        for (const listed_facet *one = cells->listed + run->first, *last = one + run->count; one < last; one++)
+            for (int32_t x = one->from[0]; x <= one->to[0]; x++) {
+                const int32_t low = begin - x * rows, high = end - 1 - x * rows;
+                const int32_t from = one->from[1] > low ? one->from[1] : low,
+                              to = one->to[1] < high ? one->to[1] : high;
+                for (int32_t y = from; y <= to; y++) {
+                    int32_t *row = next + ((size_t)x * (size_t)rows + (size_t)y) * (size_t)deep;
+                    for (int32_t z = one->from[2]; z <= one->to[2]; z++)
+                        if (face)
+                            face[row[z]++] = one->face;
+                        else
+                            row[z]++;
+                }
+            }
+    }
+}
+
+static void rows_of_slab(const list_job *j, int64_t slab, int32_t rows[2]) {
+    const int64_t all = rows_of(&j->f->cells);
+    rows[0] = (int32_t)(all * slab / j->slabs), rows[1] = (int32_t)(all * (slab + 1) / j->slabs);
+}
+
+// Cell c's facets are counted in first[c + 1], which becomes where they begin in those of their slab ...
+static void count_slabs(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const list_job *j = context;
+    const size_t deep = (size_t)j->f->cells.n[2];
+    for (int64_t slab = begin; slab < end; slab++) {
+        int32_t *next = j->f->cells.first + 1, sum = 0, rows[2];
+        rows_of_slab(j, slab, rows);
+        const size_t from = (size_t)rows[0] * deep, to = (size_t)rows[1] * deep;
+        memset(next + from, 0, (to - from) * sizeof *next);
+        go_through(j, rows[0], rows[1], next, NULL);
+        for (size_t c = from; c < to; c++) {
+            const int32_t count = next[c];
+            next[c] = sum, sum += count;
+        }
+        j->slab_count[slab] = sum;
+    }
+}
+
+// ... and, as they are listed, where they end. `slab_count`: of all slabs before each.
+static void fill_slabs(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const list_job *j = context;
+    for (int64_t slab = begin; slab < end; slab++) {
+        const size_t deep = (size_t)j->f->cells.n[2];
+        int32_t *next = j->f->cells.first + 1, rows[2];
+        rows_of_slab(j, slab, rows);
+        for (size_t c = (size_t)rows[0] * deep; c < (size_t)rows[1] * deep; c++) next[c] += j->slab_count[slab];
+        go_through(j, rows[0], rows[1], next, j->f->cells.face);
+    }
+}
+
+// So many that each thread has a few, where there is as much to do; each goes through the runs by itself.
+static int32_t slabs_for(const brunt_contact_context *m, const list_job *j) {
+    int64_t listed = 0;
+    for (int32_t r = 0; r < first_run(j->surface, j->surface->fem_count); r++) listed += j->f->cells.run[r].count;
+    const int64_t most = m->threads > 1 ? SLABS * (int64_t)m->threads : 1, worth = listed / RUN;
+    const int64_t slabs = worth < most ? worth : most, rows = rows_of(&j->f->cells);
+    return (int32_t)(slabs < 1 ? 1 : slabs < rows ? slabs : rows);
+}
+
+static int fill_cells(const brunt_contact_context *m, list_job *j, brunt_error *error) {
+    brunt_node_to_facet *f = j->f;
+    int32_t counts[SLABS * BRUNT_THREAD_LIMIT], all = 0;
+    j->slab_count = counts, j->slabs = slabs_for(m, j);
+    f->cells.first[0] = 0;
+    brunt_parallel(m->threads, j->slabs, 1, count_slabs, j, m->timer);
+    for (int32_t slab = 0; slab < j->slabs; slab++) {
+        const int32_t count = counts[slab];
+        counts[slab] = all, all += count;
+    }
+    if (RESERVE(&f->cells, face, all + 1, "facets in cells", error)) return BRUNT_FAILED;
+    brunt_parallel(m->threads, j->slabs, 1, fill_slabs, j, m->timer);
     return BRUNT_OK;
 }
 
@@ -107,12 +258,9 @@ static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f, br
         RESERVE(&f->cells, near, s->node_count + 1, "marks of nodes", error) ||
         RESERVE(&f->cells, box, f->bodies.box_count + 1, "boxes of cells of facets", error))
         return BRUNT_FAILED;
-    memset(f->cells.first, 0, (cells + 3) * sizeof *f->cells.first);
     memset(f->cells.near, false, (size_t)s->node_count);
-    list_facets(m, f, false, error);
-    for (size_t c = 2; c <= cells + 1; c++) f->cells.first[c] += f->cells.first[c - 1];
-    if (RESERVE(&f->cells, face, f->cells.first[cells + 1] + 1, "facets in cells", error)) return BRUNT_FAILED;
-    if (brunt_feature_edges_clear(f, s, error) || list_facets(m, f, true, error)) return BRUNT_FAILED;
+    list_job j = {.surface = s, .f = f, .by = f->cells.range + MARGIN * s->mean_edge};
+    if (list_facets(m, &j, error) || fill_cells(m, &j, error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k]) continue;
         memcpy(f->cells.x + s->node_range[k], s->x + s->node_range[k],

@@ -8,6 +8,17 @@ typedef struct motion_bounds {
     double low[3], high[3];
 } motion_bounds;
 
+// A facet that is listed, and the cells along each axis that it is listed in.
+typedef struct listed_facet {
+    int32_t face, from[3], to[3];
+} listed_facet;
+
+// The facets of a run of those of one body that are listed: listed[first .. first + count), and their edges.
+typedef struct facet_run {
+    int32_t first, count, edge_count, first_edge;
+    int32_t from, to; // rows of cells that any of them is in
+} facet_run;
+
 typedef struct facet_cells {
     bool made;
     double range; // [m] what they were made with: how far bodies looked ...
@@ -21,7 +32,10 @@ typedef struct facet_cells {
     double origin[3], cell; // [m]
     int32_t n[3];
     int32_t *first, *face; // facets of cell c: face[first[c] .. first[c + 1])
-    size_t first_capacity, face_capacity, x_capacity, box_capacity, moved_capacity, near_capacity;
+    listed_facet *listed;  // while the cells are made: of all runs, each with room for all facets of it
+    facet_run *run;
+    size_t listed_capacity, run_capacity, first_capacity, face_capacity, x_capacity, box_capacity, moved_capacity,
+        near_capacity;
 } facet_cells;
 
 // Aborts where cells that are made list facets that there are not.

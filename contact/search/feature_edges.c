@@ -2,7 +2,7 @@
 #include "base/parallel.h"
 #include "contact/search/node_to_facet_parts.h"
 
-enum { GRAIN = 512 };
+enum { GRAIN = 512, KNOWN = 3 }; // KNOWN: added to what is beyond an edge where that is known, which is never 0 then
 
 // Cosine of 0.4 rad, the least turn of a feature: what is left unmet between edges that turn less is under a tenth of
 // an edge (0.5 tan 0.2), and surfaces of 16 facets a circle and more have none.
@@ -12,14 +12,17 @@ static const double DEPTH = 0.5;
 
 void brunt_feature_edges_free(near_edges *edges) {
     brunt_free(edges->near), brunt_free(edges->first), brunt_free(edges->span), brunt_free(edges->turns);
-    brunt_free(edges->feature), brunt_free(edges->feature_first);
+    brunt_free(edges->feature), brunt_free(edges->feature_first), brunt_free(edges->beyond);
 }
 
-int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error) {
-    f->edges.near_count = 0;
-    if (RESERVE(&f->edges, first, 2 * (size_t)s->fem_count + 1, "bodies with edges near others", error))
+int brunt_feature_edges_begin(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error) {
+    near_edges *edges = &f->edges;
+    if (RESERVE(edges, first, 2 * (size_t)s->fem_count + 1, "bodies with edges near others", error))
         return BRUNT_FAILED;
-    memset(f->edges.first, 0, 2 * (size_t)s->fem_count * sizeof *f->edges.first);
+    if (s->dim != 3 || edges->beyond_known) return BRUNT_OK;
+    if (RESERVE(edges, beyond, s->face_count + 1, "facets beside facets", error)) return BRUNT_FAILED;
+    memset(edges->beyond, 0, (size_t)s->face_count * sizeof *edges->beyond);
+    edges->beyond_known = true;
     return BRUNT_OK;
 }
 
@@ -35,25 +38,25 @@ static int32_t face_beyond(const brunt_contact_surface *s, int32_t p, int32_t q)
     return found;
 }
 
-// Of a solid each edge once, from the face in which it ascends; of a membrane its rims, which one face has.
-int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face,
-                            brunt_error *error) {
+// Of a solid each edge once, from the face in which it ascends; of a membrane its rims, which one face has. What is
+// beyond them is found once, as the order of the nodes tells.
+int brunt_feature_edges_of(const near_edges *edges, const brunt_contact_surface *s, int k, int32_t face,
+                           near_edge *out) {
     const int32_t *node = s->face[face];
     const int n = brunt_face_corners(node);
     const bool membrane = s->fem[k]->traits->membrane;
-    int32_t *range = f->edges.first + 2 * k;
-    if (!range[1]) range[0] = f->edges.near_count;
+    int count = 0;
     for (int c = 0; c < n; c++) {
         const int32_t p = node[c], q = node[c + 1 < n ? c + 1 : 0];
         if (!membrane && p > q) continue;
-        const int32_t other = face_beyond(s, p, q);
+        int32_t *kept = &edges->beyond[face][c];
+        if (!*kept) *kept = face_beyond(s, p, q) + KNOWN;
+        const int32_t other = *kept - KNOWN;
         if (membrane ? other != -1 : other < 0) continue;
-        const size_t used = (size_t)f->edges.near_count;
-        if (BRUNT_CAPACITY(f->edges.near, used + 1, used, "edges near other bodies", error)) return BRUNT_FAILED;
-        f->edges.near[f->edges.near_count++] = (near_edge){{p, q}, {face, other}};
+        if (out) out[count] = (near_edge){{p, q}, {face, other}};
+        count++;
     }
-    range[1] = f->edges.near_count;
-    return BRUNT_OK;
+    return count;
 }
 
 // Whether an edge is convex and turns enough.

@@ -10,11 +10,15 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     brunt_feature_edges_free(&f->edges);
     brunt_node_touches_free(&f->touches);
     brunt_initial_penetration_free(&f->penetration);
-    void *owned[] = {f->bodies.box,      f->bodies.pair,   f->bodies.box_of, f->bodies.first,   f->bodies.list,
-                     f->cells.first,     f->cells.face,    f->cells.x,       f->cells.box,      f->nodes.count,
-                     f->nodes.candidate, f->cache.nearest, f->cache.node,    f->nodes.dof_of,   f->nodes.first,
-                     f->nodes.meets,     f->cells.moved,   f->cells.near,    f->particles.dofs, f->particles.list,
-                     f->nodes.masters,   f->particles.run, f->cache.spare,   f->cache.beside,   f};
+    void *owned[] = {f->bodies.box,     f->bodies.pair,     f->bodies.box_of,
+                     f->bodies.first,   f->bodies.list,     f->cells.first,
+                     f->cells.face,     f->cells.x,         f->cells.box,
+                     f->nodes.count,    f->nodes.candidate, f->cache.nearest,
+                     f->cache.node,     f->nodes.dof_of,    f->nodes.first,
+                     f->nodes.meets,    f->cells.moved,     f->cells.near,
+                     f->particles.dofs, f->particles.list,  f->nodes.masters,
+                     f->particles.run,  f->cache.spare,     f->cache.beside,
+                     f->cells.listed,   f->cells.run,       f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
@@ -29,12 +33,13 @@ size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
     const particle_candidates *p = &f->particles;
     size_t bytes = sizeof *f + b->box_capacity + b->pair_capacity + b->box_of_capacity + b->first_capacity +
                    b->list_capacity + c->first_capacity + c->face_capacity + c->x_capacity + c->box_capacity +
-                   c->moved_capacity + c->near_capacity + d->node_capacity + d->nearest_capacity + d->spare_capacity +
-                   d->beside_capacity + f->touches.of_capacity + f->touches.spare_capacity + f->touches.edges_capacity +
-                   f->touches.keeper_capacity + f->penetration.allowed_capacity + f->penetration.deepest_capacity +
-                   n->count_capacity + n->candidate_capacity + n->dof_of_capacity + n->first_capacity +
-                   n->meets_capacity + e->near_capacity + e->first_capacity + e->feature_capacity +
-                   e->feature_first_capacity + e->span_capacity + e->turns_capacity + p->run_capacity;
+                   c->moved_capacity + c->near_capacity + c->listed_capacity + c->run_capacity + d->node_capacity +
+                   d->nearest_capacity + d->spare_capacity + d->beside_capacity + f->touches.of_capacity +
+                   f->touches.spare_capacity + f->touches.edges_capacity + f->touches.keeper_capacity +
+                   f->penetration.allowed_capacity + f->penetration.deepest_capacity + n->count_capacity +
+                   n->candidate_capacity + n->dof_of_capacity + n->first_capacity + n->meets_capacity +
+                   e->near_capacity + e->first_capacity + e->feature_capacity + e->feature_first_capacity +
+                   e->span_capacity + e->turns_capacity + e->beyond_capacity + p->run_capacity;
     bytes += (size_t)n->masters_count * sizeof *n->masters + (size_t)p->list_count * sizeof *p->list;
     for (int t = 0; t < n->masters_count; t++) bytes += n->masters[t].capacity;
     for (int t = 0; t < p->list_count; t++) bytes += p->list[t].capacity;

@@ -126,12 +126,13 @@ void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_maste
                                  brunt_constraint_entry *entry);
 
 // --- feature_edges.c
-// The edges near other bodies, in the order of the cells' facets: freed; none; and those of one more facet, of body k.
-// BRUNT_OK, or BRUNT_FAILED: out of memory.
+// The edges near other bodies, in the order of the surface's facets: freed; room for what is asked of them (BRUNT_OK,
+// or BRUNT_FAILED: out of memory); and how many a facet of body k has, which go to `out` (NULL: they are counted).
+// Several threads may ask, each of other facets.
 void brunt_feature_edges_free(near_edges *edges);
-int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error);
-int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face,
-                            brunt_error *error);
+int brunt_feature_edges_begin(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error);
+int brunt_feature_edges_of(const near_edges *edges, const brunt_contact_surface *s, int k, int32_t face,
+                           near_edge *out);
 // Lists the features among the edges of body k, as they are in this step, unless that is done. BRUNT_OK, or
 // BRUNT_FAILED: out of memory.
 int brunt_feature_edges_list(const brunt_contact_context *m, brunt_node_to_facet *f, int k, brunt_error *error);
