@@ -8,8 +8,11 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "boundary/curve.h"
+#include "boundary/damping.h"
 #include "boundary/gas.h"
 #include "boundary/node_sets.h"
+
+enum { GRAIN = 512, AHEAD = 12 }; // AHEAD: nodes of a group that are fetched meanwhile
 
 // A load of 0, whatever its table says, is none: no forces are kept and no pass runs.
 static bool is_idle(const brunt_node_set *set) {
@@ -100,7 +103,9 @@ static int make_prescribed(brunt_node_sets *sets, brunt_node_set *set, brunt_err
     uint8_t **taken = &sets->taken[set->fem_index];
     if (!fem->held && BRUNT_NEW(fem->held, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
     if (!*taken && BRUNT_NEW(*taken, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
-    if (BRUNT_NEW(set->holds, set->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
+    if (BRUNT_NEW(set->holds, set->node_count + 1, "nodes that are held", error) ||
+        BRUNT_NEW(set->internal, 3 * (size_t)(set->node_count + 1), "forces on nodes that are held", error))
+        return BRUNT_FAILED;
     unsigned wanted = 0;
     for (int a = 0; a < fem->dim; a++) wanted |= (unsigned)set->def.component[a] << a;
     for (int32_t i = 0; i < set->node_count; i++) {
@@ -191,6 +196,7 @@ void brunt_node_sets_free(brunt_node_sets *sets) {
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];
         brunt_free(set->holds);
+        brunt_free(set->internal);
         brunt_free(set->face);
         brunt_free(set->whole);
         brunt_free(set->owner);
@@ -354,24 +360,43 @@ double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal
     return x - (double)brunt_fem_node(set->fem, node)[BRUNT_FEM_X + a];
 }
 
-static void prescribe(const brunt_node_set *set, const double gravity[3], double time, double dt, double step) {
+static inline void fetch_force(const brunt_fem_body *fem, int32_t n) {
+    for (int32_t k = fem->partial_first[n]; k < fem->partial_first[n + 1]; k++)
+        __builtin_prefetch(fem->partial + (size_t)fem->partial_of[k] * 4);
+}
+
+// A group's nodes, and the forces on them, are anywhere among those of their body.
+static void gather_forces(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const brunt_node_set *set = context;
+    for (int64_t i = begin; i < end; i++) {
+        if (i + AHEAD < end) fetch_force(set->fem, set->node[i + AHEAD]);
+        if (!brunt_fem_removed(set->fem, set->node[i]))
+            brunt_fem_internal_force(set->fem, set->node[i], set->internal + 3 * i);
+    }
+}
+
+static void prescribe(brunt_node_set *set, const brunt_kick *kick, double time, double step) {
     const brunt_group_def *def = &set->def;
     brunt_fem_body *fem = set->fem;
     brunt_impulse_account *last = &set->boundary->last;
     const double now = brunt_curve_at(&def->table, time + 0.5 * step);
     const brunt_placement goal = brunt_node_set_goal(set, time + step);
+    const double dt = kick->dt;
+    brunt_parallel(kick->threads, set->node_count, GRAIN, gather_forces, set, kick->timer);
     for (int32_t i = 0; i < set->node_count; i++) {
         const int32_t n = set->node[i];
+        if (i + AHEAD < set->node_count) __builtin_prefetch(brunt_fem_node(fem, set->node[i + AHEAD]), 1);
         if (brunt_fem_removed(fem, n)) continue;
-        real *node = brunt_fem_node(fem, n), force[3];
+        real *node = brunt_fem_node(fem, n);
+        const real *force = set->internal + 3 * (size_t)i;
         double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
-        brunt_fem_internal_force(fem, n, force);
         for (int a = 0; a < 3; a++) x[a] = (double)node[a];
         for (int a = 0; a < fem->dim; a++) {
             if (!(set->holds[i] >> a & 1)) continue;
             double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
             double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
-            old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
+            old[a] = trial - dt * (((double)force[a] + load) / mass + kick->gravity[a]);
             v[a] = set->does->goal ? brunt_node_set_way(set, &goal, n, a) / step : now * def->value[a];
             J[a] = mass * fem->damping_mass * (v[a] - trial);
             mean[a] = 0.5 * (old[a] + v[a]);
@@ -381,10 +406,9 @@ static void prescribe(const brunt_node_set *set, const double gravity[3], double
     }
 }
 
-void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
-                               double step) {
+void brunt_node_sets_prescribe(const brunt_node_sets *sets, const brunt_kick *kick, double time, double step) {
     for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].does->moves) prescribe(&sets->set[k], gravity, time, dt, step);
+        if (sets->set[k].does->moves) prescribe(&sets->set[k], kick, time, step);
 }
 
 // The first of ascending numbers from `at` on that is no less than n; as fast as it is near.

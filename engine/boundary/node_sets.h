@@ -18,6 +18,7 @@ typedef struct brunt_node_set {
     const int32_t *node;
     int32_t node_count;
     uint8_t *holds;     // of each node the components that it prescribes, as bits; NULL of loads
+    real *internal;     // node_count x 3 [N] of this step, for what prescribes
     int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
     int32_t face_count;
     // Of bodies that erode, the faces at the start and the elements they are of, by their numbers in the mesh; else
@@ -59,9 +60,8 @@ void brunt_loads_end(const brunt_node_sets *sets, double dt);
 brunt_placement brunt_node_set_goal(const brunt_node_set *set, double time);
 // What a node (by its number in the body) has of that to go along axis a [m].
 double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal, int32_t node, int a);
-// Prescribed motion, and its account; `step` is how far the nodes then move.
-void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
-                               double step);
+// Prescribed motion after a kick, and its account; the nodes then move for `step`.
+void brunt_node_sets_prescribe(const brunt_node_sets *sets, const brunt_kick *kick, double time, double step);
 // Reaction of what contact gave to held nodes.
 void brunt_node_sets_account_contact(const brunt_node_sets *sets, const brunt_contact_surface *surface);
 // Vectors of the shares that the corners of a face have of its area [m^2], outward: int N_a n dA.

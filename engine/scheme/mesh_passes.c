@@ -110,7 +110,7 @@ static void account_gravity(brunt_world *world, const double gravity[3], double 
     }
 }
 
-static brunt_kick drag_of(brunt_world *world, const brunt_step *step) {
+static brunt_kick kick_of(brunt_world *world, const brunt_step *step) {
     const double *gravity = step->gravity;
     return (brunt_kick){.dt = step->kick,
                         .gravity = {gravity[0], gravity[1], gravity[2]},
@@ -120,7 +120,7 @@ static brunt_kick drag_of(brunt_world *world, const brunt_step *step) {
 
 int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    const brunt_kick drag = drag_of(world, step);
+    const brunt_kick drag = kick_of(world, step);
     job j = {world, step->gravity, step->kick};
     if (world->boundaries.sets.act || world->boundaries.damping.active)
         brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, step->kick);
@@ -131,7 +131,8 @@ int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
 }
 
 int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error) {
-    brunt_node_sets_prescribe(&world->boundaries.sets, step->gravity, world->clock.time, step->kick, step->dt);
+    const brunt_kick kick = kick_of(world, step);
+    brunt_node_sets_prescribe(&world->boundaries.sets, &kick, world->clock.time, step->dt);
     const brunt_node_set *lost = world->boundaries.sets.gas_lost;
     if (!lost) return BRUNT_OK;
     char reason[200];
@@ -143,7 +144,7 @@ int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error) 
 // The other half of what loads and drag do: velocities are final now.
 int brunt_pass_finish_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    const brunt_kick drag = drag_of(world, step);
+    const brunt_kick drag = kick_of(world, step);
     if (world->boundaries.sets.act) brunt_loads_end(&world->boundaries.sets, step->kick);
     if (world->boundaries.damping.active)
         brunt_damping_end(&world->boundaries.damping, &world->bodies, &drag, &world->ledger.damping);
