@@ -365,7 +365,7 @@ static double deepest_of(brunt_world *world, double angle) {
 // A paddle comes round to a block and takes it along, with no overlap: what it has not reached it does not push, and
 // what it comes to within a step, by a tenth of a cell or two, it does.
 START_TEST(sweeps) {
-    brunt_world_def def = begin(2, 0, _i ? 0.015 : 2e-3, 0.3);
+    brunt_world_def def = begin(2, 0, _i ? 0.0075 : 2e-3, 0.3);
     const double gap = 0.1; // [rad]
     def_box(&def, "block", XYZ(0.5, 0, 0), XYZ(0.8, 0.2, 0))->particles_per_cell = 16;
     turn(def_line(&def, 0, 0, 1.2 * cos(-gap), 1.2 * sin(-gap), BRUNT_SEPARATE), 1, 0, 0, 1);
