@@ -30,7 +30,7 @@ class Run(NamedTuple):
     overrides: list
     short: list  # measures that are known to miss what they should be
     scatter: list  # measures that last digits move by as much as they are: asked is what the scene asks
-    share: float  # of a figure, that it may be off on another machine
+    shares: dict  # of a figure, that it may be off on another machine: of some by name, "": of all others
 
 
 class Figure(NamedTuple):
@@ -56,10 +56,11 @@ def read_runs():
     for n, line in lines_of(RUNS):
         words = shlex.split(line)
         if len(words) < 3 or words[2] not in ("quick", "long") or words[0] in runs:
-            raise Wrong(f"{RUNS}:{n}: RUN SCENE quick|long [short:MEASURE] [scatter:MEASURE] [within:SHARE] [KEY=VALUE...] is wanted, every RUN once")
+            raise Wrong(f"{RUNS}:{n}: RUN SCENE quick|long [short:MEASURE] [scatter:MEASURE] [within:[MEASURE:]SHARE] [KEY=VALUE...] is wanted, every RUN once")
         known = {k: [w[len(k):] for w in words[3:] if w.startswith(k)] for k in ("short:", "scatter:", "within:")}
         rest = [w for w in words[3:] if not w.startswith(tuple(known))]
-        runs[words[0]] = Run(*words[:3], rest, known["short:"], known["scatter:"], float((known["within:"] or [0.01])[0]))
+        shares = {name: float(share) for name, _, share in (w.rpartition(":") for w in ["0.01", *known["within:"]])}
+        runs[words[0]] = Run(*words[:3], rest, known["short:"], known["scatter:"], shares)
     return runs
 
 
@@ -154,7 +155,7 @@ def figures_of(run, folder, summary, names):
             value = summary
             for key in name.split("."):
                 value = value[key]
-        share = 0.1 if expect == 0 else run.share  # what should be nothing is rounding, or an error of second order
+        share = 0.1 if expect == 0 else run.shares.get(name, run.shares[""])  # what should be nothing is rounding, or an error of second order
         within = float("inf") if name in run.scatter else share * abs(value) + 1e-9 * (expect == 0)
         found[name] = Figure(float(value), expect, within)
     return found
