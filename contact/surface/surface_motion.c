@@ -199,12 +199,6 @@ static inline void make_normal(brunt_contact_surface *s, int k, int32_t n) {
     for (int a = 0; a < 3; a++) s->normal[n][a] = sum[a];
 }
 
-static inline void fetch_force(const brunt_fem_body *fem, int32_t node) {
-    __builtin_prefetch(brunt_fem_node(fem, node));
-    for (int32_t k = fem->partial_first[node]; k < fem->partial_first[node + 1]; k++)
-        __builtin_prefetch(fem->partial + (size_t)fem->partial_of[k] * 4);
-}
-
 // Of the nodes that are near something: velocities, masses and normals, and how far they have gone.
 static void gather_near(const job *j, int k, int32_t begin, int32_t end, struct brunt_surface_way *way) {
     brunt_contact_surface *s = j->surface;
@@ -213,7 +207,10 @@ static void gather_near(const job *j, int k, int32_t begin, int32_t end, struct 
         if (!s->motion.near[n]) continue;
         const int32_t node = s->node[n];
         const real *at = brunt_fem_node(fem, node);
-        if (n + AHEAD < end && s->motion.near[n + AHEAD]) fetch_force(fem, s->node[n + AHEAD]);
+        if (n + AHEAD < end && s->motion.near[n + AHEAD]) {
+            __builtin_prefetch(brunt_fem_node(fem, s->node[n + AHEAD]));
+            brunt_fem_fetch_force(fem, s->node[n + AHEAD]);
+        }
         real force[3];
         brunt_fem_internal_force(fem, node, force);
         double inverse = 1 / (double)at[BRUNT_FEM_MASS];

@@ -360,17 +360,11 @@ double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal
     return x - (double)brunt_fem_node(set->fem, node)[BRUNT_FEM_X + a];
 }
 
-static inline void fetch_force(const brunt_fem_body *fem, int32_t n) {
-    for (int32_t k = fem->partial_first[n]; k < fem->partial_first[n + 1]; k++)
-        __builtin_prefetch(fem->partial + (size_t)fem->partial_of[k] * 4);
-}
-
-// A group's nodes, and the forces on them, are anywhere among those of their body.
 static void gather_forces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_node_set *set = context;
     for (int64_t i = begin; i < end; i++) {
-        if (i + AHEAD < end) fetch_force(set->fem, set->node[i + AHEAD]);
+        if (i + AHEAD < end) brunt_fem_fetch_force(set->fem, set->node[i + AHEAD]);
         if (!brunt_fem_removed(set->fem, set->node[i]))
             brunt_fem_internal_force(set->fem, set->node[i], set->internal + 3 * i);
     }

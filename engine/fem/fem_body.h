@@ -253,6 +253,12 @@ static inline void brunt_fem_internal_force(const brunt_fem_body *body, int32_t 
     }
 }
 
+// Nodes of a group or a surface, and what is summed up for them, are anywhere in their body: fetched for a later call.
+static inline void brunt_fem_fetch_force(const brunt_fem_body *body, int32_t node) {
+    for (int32_t k = body->partial_first[node]; k < body->partial_first[node + 1]; k++)
+        __builtin_prefetch(body->partial + (size_t)body->partial_of[k] * 4);
+}
+
 // Sums over a run of nodes, added up in order by the caller (over runs whose bounds do not depend on the threads). Of a
 // step v -> v_new (kick, and what contact and boundaries then change), x -> x + dt v_new (drift):
 //   work of gravity g       dt g . (momentum_old + momentum) / 2         impulse dt mass g, angular dt first_moment x g
