@@ -20,13 +20,22 @@ typedef enum brunt_contact_place {
     BRUNT_MEET_ON_GRID = 8       // ... of one of them, which a mesh comes to
 } brunt_contact_place;
 
+// Of two bodies by their numbers, whose nodes are held off the facets of the other.
+typedef enum brunt_pair_slaves { BRUNT_SLAVES_BOTH, BRUNT_SLAVES_LOWER, BRUNT_SLAVES_HIGHER } brunt_pair_slaves;
+
 typedef struct brunt_pair {
     int a, b; // bodies, a < b; -1: all pairs of a crowded scene together
     brunt_contact_method method;
     unsigned meets; // bits of brunt_contact_place
     double friction;
+    brunt_pair_slaves slaves;
     brunt_impulse_account account, last;
 } brunt_pair;
+
+// Whether nodes of one body of a pair are held off the facets of the other.
+static inline bool brunt_pair_looks(const brunt_pair *pair, int from, int at) {
+    return pair->slaves == BRUNT_SLAVES_BOTH || (pair->slaves == BRUNT_SLAVES_LOWER) == (from < at);
+}
 
 // What every method is given of a step.
 typedef struct brunt_contact_context {

@@ -167,6 +167,7 @@ const brunt_contact_row brunt_contact_node_to_facet = {
     .meets = BRUNT_MEET_AT_FACETS,
     .keys = "form cell tolerance iterations touch stop",
     .self = BRUNT_SELF_MEMBRANES,
+    .sides = true,
     .knows_membranes = true,
     .planes = true,
     .near_alone = true,
@@ -192,6 +193,14 @@ bool brunt_contact_is_of(const brunt_contact_row *row, brunt_contact_method meth
 
 bool brunt_contact_has_form(const brunt_contact_row *row, brunt_augury_form form) {
     return !row->forms || row->forms >> form & 1;
+}
+
+bool brunt_contact_has_sides(brunt_contact_method method, brunt_augury_form form) {
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        if (brunt_contact_rows[r]->sides && brunt_contact_is_of(brunt_contact_rows[r], method) &&
+            brunt_contact_has_form(brunt_contact_rows[r], form))
+            return true;
+    return false;
 }
 
 bool brunt_contact_has_key(const brunt_contact_row *row, const char *key) {

@@ -34,6 +34,7 @@ typedef struct brunt_contact_row {
     bool never_axisymmetric; // not in axisymmetric scenes
     bool planar;             // in two dimensions alone
     bool overlaps;           // of an energy: surfaces may overlap, gaps have a sign
+    bool sides;              // of two meshes either may be the slave alone
     // Of what meets at facets.
     bool knows_membranes;        // it knows the two sides of a membrane
     bool planes;                 // it acts where there are planes alone, too
@@ -105,6 +106,9 @@ brunt_gap_energy *brunt_contact_energy(brunt_contact_method method);
 bool brunt_contact_overlaps(brunt_contact_method method);
 bool brunt_contact_is_planar(brunt_contact_method method);
 brunt_contact_self brunt_contact_with_itself(brunt_contact_method method);
+// Whether one of two meshes may be the slave alone; what messages say of it.
+bool brunt_contact_has_sides(brunt_contact_method method, brunt_augury_form form);
+#define BRUNT_CONTACT_WITH_SIDES "augury, form node_to_facet,"
 // Aborts where a row keeps something that `rows` has no bit of, or what it keeps is not as it must be. `memory`: of
 // each.
 void brunt_contact_methods_validate(unsigned rows, void *const memory[]);

@@ -43,10 +43,11 @@ static bool overlap(const body_box *a, const body_box *b, double by) {
     return true;
 }
 
-static bool meets(const brunt_contact_context *m, const body_box *a, const body_box *b) {
-    if (a->fem < 0 && b->fem < 0) return false; // particles have no facets: those meet at grid nodes
-    int32_t pair = brunt_pair_of(m->pair_map, a->body, b->body);
-    return pair >= 0 && m->pairs[pair].meets & BRUNT_MEET_AT_FACETS;
+// How two bodies meet at facets; NULL: they do not.
+static const brunt_pair *pair_between(const brunt_contact_context *m, const body_box *a, const body_box *b) {
+    if (a->fem < 0 && b->fem < 0) return NULL; // particles have no facets: those meet at grid nodes
+    const int32_t pair = brunt_pair_of(m->pair_map, a->body, b->body);
+    return pair >= 0 && m->pairs[pair].meets & BRUNT_MEET_AT_FACETS ? &m->pairs[pair] : NULL;
 }
 
 static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
@@ -103,6 +104,33 @@ static void leave_sleeping(brunt_contact_surface *s, brunt_node_to_facet *f) {
     f->bodies.pair_count = kept;
 }
 
+// Boxes near boxes, by their pairs.
+static int list_near(near_bodies *bodies, brunt_error *error) {
+    const size_t boxes = (size_t)bodies->box_count, pairs = (size_t)bodies->pair_count;
+    if (BRUNT_CAPACITY(bodies->first, boxes + 2, 0, "boxes near boxes", error) ||
+        BRUNT_CAPACITY(bodies->list, 2 * pairs + 1, 0, "boxes near boxes", error))
+        return BRUNT_FAILED;
+    int32_t *first = bodies->first; // of box b at b + 1, until all are listed
+    memset(first, 0, (boxes + 2) * sizeof *first);
+    for (const near_pair *pair = bodies->pair; pair < bodies->pair + pairs; pair++) {
+        first[pair->a + 2]++;
+        if (pair->b != pair->a) first[pair->b + 2]++;
+    }
+    for (int32_t k = 2; k <= bodies->box_count + 1; k++) first[k] += first[k - 1];
+    for (int looks = 1; looks >= 0; looks--) {
+        for (const near_pair *pair = bodies->pair; pair < bodies->pair + pairs; pair++) {
+            if (pair->a_looks == looks) bodies->list[first[pair->a + 1]++] = pair->b;
+            if (pair->b != pair->a && pair->b_looks == looks) bodies->list[first[pair->b + 1]++] = pair->a;
+        }
+        for (int32_t k = 0; k < bodies->box_count && looks; k++) bodies->box[k].looks_end = first[k + 1];
+    }
+    for (const near_pair *pair = bodies->pair; pair < bodies->pair + pairs; pair++) {
+        bodies->box[pair->a].seen = bodies->box[pair->a].seen || pair->b_looks;
+        bodies->box[pair->b].seen = bodies->box[pair->b].seen || pair->a_looks;
+    }
+    return BRUNT_OK;
+}
+
 static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
     f->bodies.pair_count = 0;
     for (int32_t i = 0; i < f->bodies.box_count; i++)
@@ -110,30 +138,17 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, br
         for (int32_t k = f->bodies.box[i].membrane ? i : i + 1;
              k < f->bodies.box_count && f->bodies.box[k].low[0] - 2 * f->bodies.range <= f->bodies.box[i].high[0];
              k++) {
-            if (!overlap(&f->bodies.box[i], &f->bodies.box[k], 2 * f->bodies.range) ||
-                !meets(m, &f->bodies.box[i], &f->bodies.box[k]))
-                continue;
+            const body_box *a = &f->bodies.box[i], *b = &f->bodies.box[k];
+            const brunt_pair *pair = overlap(a, b, 2 * f->bodies.range) ? pair_between(m, a, b) : NULL;
+            if (!pair) continue;
             if (BRUNT_CAPACITY(f->bodies.pair, (size_t)f->bodies.pair_count + 1, (size_t)f->bodies.pair_count,
                                "pairs of bodies that are near each other", error))
                 return BRUNT_FAILED;
-            f->bodies.pair[f->bodies.pair_count++] = (near_pair){i, k};
+            f->bodies.pair[f->bodies.pair_count++] =
+                (near_pair){i, k, brunt_pair_looks(pair, a->body, b->body), brunt_pair_looks(pair, b->body, a->body)};
         }
     if (!(m->look > 0)) leave_sleeping(m->surface, f);
-    if (RESERVE(&f->bodies, first, f->bodies.box_count + 2, "boxes near boxes", error) ||
-        RESERVE(&f->bodies, list, 2 * f->bodies.pair_count + 1, "boxes near boxes", error))
-        return BRUNT_FAILED;
-    memset(f->bodies.first, 0, ((size_t)f->bodies.box_count + 2) * sizeof *f->bodies.first);
-    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
-        f->bodies.first[f->bodies.pair[p].a + 2]++;
-        if (f->bodies.pair[p].b != f->bodies.pair[p].a) f->bodies.first[f->bodies.pair[p].b + 2]++;
-    }
-    for (int32_t k = 2; k <= f->bodies.box_count + 1; k++) f->bodies.first[k] += f->bodies.first[k - 1];
-    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
-        f->bodies.list[f->bodies.first[f->bodies.pair[p].a + 1]++] = f->bodies.pair[p].b;
-        if (f->bodies.pair[p].b != f->bodies.pair[p].a)
-            f->bodies.list[f->bodies.first[f->bodies.pair[p].b + 1]++] = f->bodies.pair[p].a;
-    }
-    return BRUNT_OK;
+    return list_near(&f->bodies, error);
 }
 
 // Whether there is a place for everything: else no cells could be laid.

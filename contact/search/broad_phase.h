@@ -9,10 +9,13 @@ typedef struct body_box {
     int fem;  // index in the surface, -1: material points
     int mpm;
     bool membrane;
+    bool seen;         // nodes or particles of some that is near look at its facets
+    int32_t looks_end; // of those near it in the list: its nodes look at the facets of the ones before
 } body_box;
 
 typedef struct near_pair {
-    int32_t a, b; // of the boxes
+    int32_t a, b;          // of the boxes
+    bool a_looks, b_looks; // nodes of one look at facets of the other
 } near_pair;
 
 typedef struct near_bodies {
@@ -27,7 +30,7 @@ typedef struct near_bodies {
     int32_t pair_count;
     int32_t *box_of; // body of the surface -> box
     size_t box_of_capacity;
-    int32_t *first, *list; // boxes near box b: list[first[b] .. first[b + 1])
+    int32_t *first, *list; // boxes near box b: list[first[b] .. first[b + 1]), those that it looks at before the others
     size_t first_capacity, list_capacity;
 } near_bodies;
 

@@ -34,7 +34,8 @@ static bool within(const body_box *box, const double x[3], double by) {
 
 bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l) {
     l->touches = l->enters = 0;
-    for (int32_t q = f->bodies.first[l->box]; q < f->bodies.first[l->box + 1] && l->touches < BRUNT_MAX_NEAR; q++) {
+    const int32_t end = f->bodies.box[l->box].looks_end;
+    for (int32_t q = f->bodies.first[l->box]; q < end && l->touches < BRUNT_MAX_NEAR; q++) {
         const body_box *other = &f->bodies.box[f->bodies.list[q]];
         if (other->fem < 0 || !within(other, l->x, f->bodies.range)) continue;
         l->touch[l->touches++] = other->body;

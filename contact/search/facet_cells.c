@@ -64,10 +64,12 @@ static void take_facets(const list_job *j, int k, int32_t begin, int32_t end, fa
             __atomic_store_n(&f->cells.near[s->face[face][c]], true, __ATOMIC_RELAXED);
         listed_facet *one = &f->cells.listed[run->first + run->count++];
         one->face = face;
+        if (s->dim == 3) run->edge_count += brunt_feature_edges_of(&f->edges, s, k, face, NULL);
+        one->from[0] = 0, one->to[0] = -1; // in no cell
+        if (!f->bodies.box[box].seen) continue;
         cell_range(f, low, high, j->by, one->from, one->to);
         const int32_t from = one->from[0] * rows + one->from[1], to = one->to[0] * rows + one->to[1];
         run->from = from < run->from ? from : run->from, run->to = to > run->to ? to : run->to;
-        if (s->dim == 3) run->edge_count += brunt_feature_edges_of(&f->edges, s, k, face, NULL);
     }
 }
 

@@ -52,8 +52,8 @@ double brunt_node_to_facet_approach(const brunt_corners *under, const double n[3
     return along;
 }
 
-void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h, const double x[3],
-                                    int body, brunt_constraint *constraint) {
+const brunt_pair *brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h,
+                                                 const double x[3], int body, brunt_constraint *constraint) {
     brunt_pair *pair = &m->pairs[brunt_pair_of(m->pair_map, body, h->body)];
     memcpy(constraint->x, x, sizeof constraint->x);
     memcpy(constraint->n, h->n, sizeof constraint->n);
@@ -61,6 +61,7 @@ void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_
     constraint->friction = pair->friction;
     constraint->account = &pair->last, constraint->partner = h->body + 1;
     constraint->sign = (body > h->body) - (body < h->body);
+    return pair;
 }
 
 int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
@@ -124,9 +125,9 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
             const brunt_master *master = h->feature.any ? kept_master(f, h) : &plain;
             if (!h->feature.any) brunt_node_to_facet_master(s, h, s->x[n], &plain);
             *constraint = (brunt_constraint){.first = entry, .count = 1 + master->count, .tag = n};
-            brunt_node_to_facet_constraint(m, h, s->x[n], s->body[n], constraint);
-            constraint->area =
-                0.5 * brunt_node_to_facet_area(s, n, h->n); // the other half is counted on the other side
+            const brunt_pair *pair = brunt_node_to_facet_constraint(m, h, s->x[n], s->body[n], constraint);
+            // where both look half of it is counted on the other side
+            constraint->area = (pair->slaves ? 1 : 0.5) * brunt_node_to_facet_area(s, n, h->n);
             brunt_constraint_entry lane[BRUNT_LANE_ENTRIES],
                 *to = constraint->count <= BRUNT_LANE_ENTRIES ? lane : &j->constraints->entry[entry];
             to[0] = (brunt_constraint_entry){.dof_node = f->nodes.dof_of[n], .weight = {1, 1, 1}};

@@ -117,8 +117,9 @@ int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact
 void brunt_node_to_facet_corners(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
                                  brunt_corners *under);
 double brunt_node_to_facet_approach(const brunt_corners *under, const double n[3], const double v[3], double (*of)[3]);
-void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h, const double x[3],
-                                    int body, brunt_constraint *constraint);
+// Fills what a place meets; how the two bodies meet.
+const brunt_pair *brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h,
+                                                 const double x[3], int body, brunt_constraint *constraint);
 int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
                                brunt_master *master);
 // The master's entries, whose supports there are; sets the point's facet.

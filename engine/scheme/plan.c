@@ -51,6 +51,12 @@ static bool has_tied(const brunt_pairs *pairs) {
     return false;
 }
 
+static bool has_slaves(const brunt_pairs *pairs) {
+    for (int p = 0; p < pairs->count; p++)
+        if (pairs->pair[p].slaves != BRUNT_SLAVES_BOTH) return true;
+    return false;
+}
+
 static bool has_membranes(const brunt_bodies *bodies) {
     for (int k = 0; k < bodies->fem_count; k++)
         if (bodies->fem[k].traits->membrane) return true;
@@ -78,6 +84,7 @@ static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
     X(barrier, world->contact.has_barrier, "contact.method: barrier or penalty")                                       \
     X(tied, has_tied(&world->pairs), "contact.pairs: method tied")                                                     \
     X(self_contact, world->contact.has_self, "contact.pairs: a body with itself")                                      \
+    X(one_way_contact, has_slaves(&world->pairs), "contact.pairs: sides slave")                                        \
     X(friction, world->contact.has_friction || world->boundaries.has_friction, "friction of contact or boundaries")    \
     X(surfaces, world->contact.has_surfaces, "contact of meshes, or planes they may meet")                             \
     X(hourglass, has_hourglass(&world->bodies), "bodies: elements with hourglass modes")                               \

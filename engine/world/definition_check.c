@@ -218,6 +218,7 @@ static int check_contact(const brunt_world_def *def, brunt_error *error) {
         BRUNT_TRY(brunt_check_name_ends("contact.pairs", q, pair->b, error));
         BRUNT_TRY(
             brunt_check_choice(owner, ".method", (unsigned)pair->method, (unsigned)brunt_contact_method_count, error));
+        BRUNT_TRY(brunt_check_choice(owner, ".sides", (unsigned)pair->sides, BRUNT_SIDES_SLAVE + 1, error));
         BRUNT_CHECK_NUMBERS(owner, {".friction", &pair->friction, 1, BRUNT_ANY_NUMBER});
     }
     int32_t one[2], other[2];

@@ -20,17 +20,19 @@ typedef struct maker {
     brunt_world *world;
     const brunt_world_def *def;
     const brunt_body_def **order;
-    bool crowded; // all pairs of one method and friction are one
+    bool crowded; // all pairs of one method, friction and slaves are one
     bool *self;   // of each body: a pair with itself has been made
     int selves;   // how many
     candidate *list;
     int32_t count;
 } maker;
 
-// In a crowded scene all pairs of one method and friction are one, but those of a body with itself, which come first.
+// In a crowded scene all pairs that are alike are one, but those of a body with itself, which come first.
 static int find_alike(const brunt_pairs *pairs, int selves, const brunt_pair *pair) {
     for (int p = selves; p < pairs->count; p++)
-        if (pairs->pair[p].method == pair->method && pairs->pair[p].friction == pair->friction) return p;
+        if (pairs->pair[p].method == pair->method && pairs->pair[p].friction == pair->friction &&
+            pairs->pair[p].slaves == pair->slaves)
+            return p;
     return BRUNT_NONE;
 }
 
@@ -69,6 +71,8 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
         REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by %s", q, def->a,
                brunt_contact_word(brunt_contact_of_self(m->def->scheme)));
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
+    if (def->sides != BRUNT_SIDES_BOTH)
+        REFUSE("contact.pairs[%d].sides: '%s' is both sides of contact with itself", q, def->a);
     if (m->self[a]) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
     m->self[a] = true;
     brunt_contact *contact = &m->world->contact;
@@ -149,6 +153,19 @@ static void list_candidates(maker *m) {
 
 // ------------------------------------------------------------------------------------------ what they are
 
+// Whose nodes are slaves of two bodies, as a pair of the definition says.
+static int settle_sides(const maker *m, const candidate *c, brunt_pair *pair, brunt_error *error) {
+    const brunt_pair_def *def = &m->def->contact.pairs[c->named];
+    const bool meshes = m->world->pairs.mesh[c->a] && m->world->pairs.mesh[c->b];
+    if (def->sides == BRUNT_SIDES_BOTH) return BRUNT_OK;
+    if (!brunt_contact_has_sides(pair->method, m->def->contact.form) || !meshes)
+        REFUSE("contact.pairs[%d].sides: only two meshes in contact by %s have slaves", (int)c->named,
+               BRUNT_CONTACT_WITH_SIDES);
+    const bool turned = brunt_find_ordered(m->order, m->def->body_count, def->a) > c->a;
+    pair->slaves = turned ? BRUNT_SLAVES_HIGHER : BRUNT_SLAVES_LOWER;
+    return BRUNT_OK;
+}
+
 // The method of two bodies as they are made, and what the world has by it.
 static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, brunt_error *error) {
     const brunt_body_def *a = m->order[c->a], *b = m->order[c->b];
@@ -179,6 +196,7 @@ static int make_pair(const maker *m, const candidate *c, brunt_error *error) {
     int index = -1;
     if (pair.method != BRUNT_CONTACT_NONE) {
         int status = settle_method(m, c, &pair, error);
+        if (!status && c->named >= 0) status = settle_sides(m, c, &pair, error);
         if (status) return status;
         if (m->crowded) pair.a = pair.b = -1;
         index = m->crowded ? find_alike(pairs, m->selves, &pair) : -1;

@@ -76,6 +76,7 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
     scene_node *rubs = brunt_tree_child(node, "friction");
     if (!rubs) rubs = brunt_add_default(reader, node, "friction", tied ? "0" : friction);
     pair->friction = brunt_real_of(node, "friction", 0);
+    pair->sides = (brunt_contact_sides)(int)brunt_real_of(node, "sides", BRUNT_SIDES_BOTH);
     if (tied && pair->friction > 0)
         brunt_tree_complain_key(reader->tree, rubs, "%s bodies do not slide on each other: there is no friction",
                                 brunt_contact_word(pair->method));
@@ -97,6 +98,19 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
         check_self(reader, between, method, pair);
     else if (method && method->good)
         check_pair_method(reader, method, pair);
+}
+
+// Only meshes that meet at each other's facets have slaves.
+static void check_sides(scene_reader *reader, const scene_node *node, const brunt_pair_def *pair) {
+    const scene_node *sides = brunt_tree_child(node, "sides");
+    const bool known = first_named(reader, pair->a) && first_named(reader, pair->b),
+               meshes = has_mesh(reader, pair->a) && has_mesh(reader, pair->b);
+    if (!sides || !sides->good || pair->sides == BRUNT_SIDES_BOTH) return;
+    if (!strcmp(pair->a, pair->b))
+        brunt_tree_complain(reader->tree, sides, "'%s' is both sides of contact with itself", pair->a);
+    else if (!brunt_contact_has_sides(pair->method, reader->scene->world.contact.form) || (known && !meshes))
+        brunt_tree_complain(reader->tree, sides, "only two meshes in contact by %s have slaves",
+                            BRUNT_CONTACT_WITH_SIDES);
 }
 
 // How many pairs of bodies an entry is: a crowd stands for all its members.
@@ -279,7 +293,7 @@ static void check_touch(scene_reader *reader, const scene_node *method, brunt_co
                             brunt_contact_word(of_them), words);
 }
 
-static void check_touches(scene_reader *reader, const scene_node *list) {
+static void check_ways(scene_reader *reader, const scene_node *list) {
     const brunt_contact_def *contact = &reader->scene->world.contact;
     int64_t i = 0;
     for (scene_node *child = contact->pairs ? list->first : NULL; child;
@@ -289,6 +303,7 @@ static void check_touches(scene_reader *reader, const scene_node *list) {
         const scene_node *method = child->kind == SCENE_MAP ? brunt_tree_child(child, "method") : NULL;
         if (a && b && a != b && a->method == BRUNT_MPM && b->method == BRUNT_MPM && method && method->good)
             check_touch(reader, method, pair->method);
+        if (child->kind == SCENE_MAP) check_sides(reader, child, pair);
     }
 }
 
@@ -324,7 +339,7 @@ void brunt_fill_contact(scene_reader *reader) {
     check_pairs(reader, brunt_tree_child(node, "pairs"), method);
     fill_keys(reader, node);
     if (!fem && world->body_count && method && method->good) check_touch(reader, method, contact->method);
-    check_touches(reader, brunt_tree_child(node, "pairs"));
+    check_ways(reader, brunt_tree_child(node, "pairs"));
     check_pair_columns(reader);
 }
 

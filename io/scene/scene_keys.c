@@ -190,6 +190,7 @@ static const scene_key own_rows[] = {
     {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane, with barriers any mesh, with itself, which it is not in contact with otherwise; its force in the history is 0, as both sides are of one body, its area is not"},
     {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, CONTACT_WORDS, 0, false, "default: that of contact"},
     {"contact.pairs[].friction", SCENE_REAL, "1", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "default: that of contact"},
+    {"contact.pairs[].sides", SCENE_WORD, NULL, OPTIONAL, ANY, "both|slave", 0, false, "of two meshes by augury, form node_to_facet: whose nodes are held off the facets of the other; both (default), or slave: those of the first of `between` alone, at about half the cost. The first is to be the finer mesh, or the softer body: nodes of the second pass between its nodes. Edges that cross meet either way"},
 
     {"boundaries", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "what acts on bodies from outside, each of one kind"},
     {"boundaries[].name", SCENE_NAME, NULL, OPTIONAL, NONE, "in the history; default: its kind and number, plane1, ..."},

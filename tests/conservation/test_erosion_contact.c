@@ -665,7 +665,8 @@ static brunt_world *torn_world(brunt_element_kind kind) {
     snprintf(sheet->faces[0], sizeof sheet->faces[0], "zmin");
     mesh_box(&def, "tool", XYZ(0.33, 0.33, 0.006), XYZ(0.68, 0.68, 0.3), BRUNT_HEX8, 0.1, false)->velocity[2] = -8;
     def.contact.pairs = brunt_alloc(sizeof *def.contact.pairs), def.contact.pair_count = 1;
-    def.contact.pairs[0] = (brunt_pair_def){"sheet", "sheet", BRUNT_CONTACT_AUGURY, 0.1};
+    def.contact.pairs[0] =
+        (brunt_pair_def){.a = "sheet", .b = "sheet", .method = BRUNT_CONTACT_AUGURY, .friction = 0.1};
     return world_take(&def);
 }
 

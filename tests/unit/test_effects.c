@@ -75,6 +75,10 @@ static void self(scene *s) {
     s->pair.method = BRUNT_CONTACT_AUGURY;
     snprintf(s->pair.b, sizeof s->pair.b, "a");
 }
+static void one_way(scene *s) {
+    add_pair(s);
+    s->pair.method = BRUNT_CONTACT_AUGURY, s->pair.sides = BRUNT_SIDES_SLAVE;
+}
 static void add_plane(scene *s) { s->def.planes = &s->plane, s->def.plane_count = 1; }
 static void stick(scene *s) { add_plane(s), s->plane.condition = BRUNT_STICK; }
 static void move_stick(scene *s) { stick(s), s->plane.velocity[1] = 1; }
@@ -183,6 +187,7 @@ static const asked list[] = {
     {"load of 0", make_mesh, load_of_0, "elements "},
     {"mesh", make_mesh, none, "elements "},
     {"contact of meshes", make_mesh, augury, "elements contact surfaces "},
+    {"one-way contact", make_mesh, one_way, "elements contact one_way_contact surfaces "},
     {"hourglass", make_mesh, hexes, "elements hourglass "},
     {"hourglass of 0", make_mesh, no_springs, "elements "},
     {"viscous hourglass of 0", make_mesh, no_dampers, "elements "},

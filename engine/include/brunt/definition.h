@@ -106,11 +106,16 @@ typedef enum brunt_stop_kind { BRUNT_STOP_HARD, BRUNT_STOP_SPRING } brunt_stop_k
 // those between the nodes.
 typedef enum brunt_surface_kind { BRUNT_SURFACE_FACETS, BRUNT_SURFACE_ARCS } brunt_surface_kind;
 
+// Whose nodes are held off the other's facets: those of both bodies, or of the first alone, the slave, at half the
+// cost: the second's nodes then pass between its nodes. Of node to facet.
+typedef enum brunt_contact_sides { BRUNT_SIDES_BOTH, BRUNT_SIDES_SLAVE } brunt_contact_sides;
+
 // Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
 typedef struct brunt_pair_def {
     char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
     brunt_contact_method method;
-    double friction; // [-] >= 0
+    double friction;           // [-] >= 0
+    brunt_contact_sides sides; // of two meshes; default both
 } brunt_pair_def;
 
 typedef struct brunt_contact_def {
