@@ -8,6 +8,7 @@
 //   transfer  pic|apic, of the published form
 //   n         iterations or sweeps (-1: the form's own)            mu        friction
 //   touch     inelastic|elastic (contact_table.md is of the first)
+//   slave     of the first two bodies the slave, 1 or 2 (0: both are)
 //   element   tet4|hex8                                            end       [s]
 //   speed     factor on the velocities                             stiff     factor on E
 //   e1, r1    factors on E and density of the first body           dt        factor on the time step
@@ -30,7 +31,7 @@ enum { ROUND_LIMIT = 16 };
 
 typedef struct settings {
     double h, h2, hg, grid, mu, end, speed, stiff, e1, r1, dt, turn, shift, load, ramp;
-    int n, samples, threads, trace, bodies, rounds;
+    int n, samples, threads, trace, bodies, rounds, slave;
     const char *rows;
     brunt_augury_form form;
     brunt_touch_kind touch;
@@ -74,6 +75,7 @@ static settings read_settings(int argc, char **argv) {
                   .trace = (int)number(argc, argv, "trace", 0),
                   .bodies = (int)number(argc, argv, "bodies", 0),
                   .rounds = (int)number(argc, argv, "rounds", 1),
+                  .slave = (int)number(argc, argv, "slave", 0),
                   .rows = word(argc, argv, "rows", NULL)};
     if (s.rounds < 1) s.rounds = 1;
     if (s.rounds > ROUND_LIMIT) s.rounds = ROUND_LIMIT;
@@ -94,6 +96,22 @@ static settings read_settings(int argc, char **argv) {
 static void stop(const char *what, const brunt_error *error) {
     printf("%s: %s\n", what, error->message);
     exit(1);
+}
+
+// The world of a definition whose bodies are complete.
+static brunt_world *create(brunt_world_def *def, const settings *s, const char *what) {
+    brunt_error error;
+    if (s->slave) {
+        brunt_pair_def *pair = def->contact.pairs = brunt_def_alloc(sizeof *pair);
+        def->contact.pair_count = 1;
+        *pair = (brunt_pair_def){
+            .method = def->contact.method, .friction = def->contact.friction, .sides = BRUNT_SIDES_SLAVE};
+        memcpy(pair->a, def->bodies[s->slave - 1].name, sizeof pair->a);
+        memcpy(pair->b, def->bodies[2 - s->slave].name, sizeof pair->b);
+    }
+    brunt_world *world = brunt_world_create(def, &error);
+    if (!world) stop(what, &error);
+    return world;
 }
 
 static brunt_world_def begin(const settings *s, int bodies) {
@@ -179,8 +197,7 @@ static brunt_world_def cubes(const settings *s, const char *kind) {
 static void run_cubes(const settings *s, const char *kind) {
     brunt_world_def def = cubes(s, kind);
     brunt_error error;
-    brunt_world *world = brunt_world_create(&def, &error);
-    if (!world) stop(kind, &error);
+    brunt_world *world = create(&def, s, kind);
     brunt_gap_probe *probe = brunt_gap_probe_make(world);
     double end = s->end > 0 ? s->end : 0.15 / s->speed, deepest = 0, closest = INFINITY, most = 0, from = brunt_clock(),
            measuring = 0;
@@ -253,8 +270,7 @@ static void run_ramp(const settings *s) {
     def.step = 2.5e-5 * s->h * s->dt;
     if (s->dt < 0) def.step = 0;
     brunt_error error;
-    brunt_world *world = brunt_world_create(&def, &error);
-    if (!world) stop("ramp", &error);
+    brunt_world *world = create(&def, s, "ramp");
     brunt_body_sums start, now;
     brunt_body_totals(world, 0, &start);
     double end = s->end > 0 ? s->end : s->ramp + 0.16, from = brunt_clock();
@@ -302,8 +318,7 @@ static void run_stack(const settings *s) {
     def.gravity_ramp = s->ramp;
     def.cfl = 0.5 * s->dt;
     brunt_error error;
-    brunt_world *world = brunt_world_create(&def, &error);
-    if (!world) stop("stack", &error);
+    brunt_world *world = create(&def, s, "stack");
     int64_t steps = (int64_t)(s->end > 0 ? s->end : 1e5);
     brunt_body_sums start, now, late;
     brunt_body_totals(world, 2, &start);
@@ -394,8 +409,7 @@ static void run_slide(const settings *s) {
     fix(&def, "a", "ymin");
     def.gravity[1] = -1e4;
     brunt_error error;
-    brunt_world *world = brunt_world_create(&def, &error);
-    if (!world) stop("slide", &error);
+    brunt_world *world = create(&def, s, "slide");
     cost c = {.rounds = 0};
     char name[64];
     const int steps = s->samples / s->rounds > 1 ? s->samples / s->rounds : 1;
@@ -403,7 +417,7 @@ static void run_slide(const settings *s) {
     for (int r = 0; r < s->rounds && !c.status; r++) measure_cost(&c, world, steps, &error);
     if (c.status) stop("slide", &error);
     const double nodes = 2.0 * (n + 1) * (n + 1);
-    snprintf(name, sizeof name, "augury slide %d sweeps", s->n > 0 ? s->n : 16);
+    snprintf(name, sizeof name, "augury slide %d sweeps%s", s->n > 0 ? s->n : 16, s->slave ? " one way" : "");
     report_cost(s, name, nodes, nodes, world, &c);
     brunt_world_destroy(world);
     brunt_world_def_free(&def);
@@ -438,8 +452,7 @@ static void run_crowd(const settings *s) {
     cost c = {.rounds = 0};
     for (int r = 0; r < s->rounds; r++) {
         brunt_world_def def = crowd(s, count);
-        brunt_world *world = brunt_world_create(&def, &error);
-        if (!world) stop("crowd", &error);
+        brunt_world *world = create(&def, s, "crowd");
         measure_cost(&c, world, s->samples, &error);
         if (c.status) stop("crowd", &error);
         if (r == s->rounds - 1) report_cost(s, "augury crowd", count, count * 98.0, world, &c);
