@@ -12,7 +12,11 @@
 //
 // A step changes strain and temperature by little, and the search for the increment its rate by less and less: powers
 // and the logarithm are computed from those at the start of the step, or of the search, by series, and anew only where
-// a point is far from them. Which way is taken is each point's own affair, so that its bits are.
+// a point is far from them, and from there on. Which way is taken is each point's own affair, so that its bits are.
+//
+// The search begins from steady flow. Where a point did not flow before, or flows slower than it did, it begins from
+// what its rate lets flow. It ends where the next step of Newton's method would change the increment by a share whose
+// square is below the tolerance: that step is taken, and the flow stress goes with its slope.
 #include "materials/return_mapping.h"
 
 enum {
@@ -94,6 +98,7 @@ static binomial binomial_of(real exponent) {
 // What is known: of x its power, or its logarithm.
 typedef struct known {
     lanes x, inverse, value; // inverse: 1 / x
+    lanes at;                // what x has changed by since the start of the step
 } known;
 
 // A function and its derivative; that, for a search, to some millionths.
@@ -101,22 +106,26 @@ typedef struct slope_value {
     lanes value, slope;
 } slope_value;
 
-// x^y for x >= 0; `change`: x less what is known. Right where `wanted`.
-BRUNT_INLINE slope_value power_beside(const binomial *b, known at, lanes x, lanes change, lane_mask wanted) {
-    const lanes r = change * at.inverse;
+// x^y for x >= 0, which has changed by `change` since the start of the step; where it is computed anew it is what is
+// known from then on. Right where `wanted`.
+BRUNT_INLINE slope_value power_beside(const binomial *b, known *at, lanes x, lanes change, lane_mask wanted) {
+    const lanes r = (change - at->at) * at->inverse;
     const lane_mask beside = lanes_abs(r) <= b->radius;
     lanes series = lanes_set(1);
     for (int k = BINOMIAL_TERMS - 1; k >= 0; k--) series = 1 + b->c[k] * r * series;
-    lanes value = at.value * series, inverse = at.inverse * (1 - r * (1 - r));
+    lanes value = at->value * series, inverse = at->inverse * (1 - r * (1 - r));
     if (lanes_any(wanted & ~beside)) {
-        value = lanes_select(beside, value, power(x, b->exponent));
-        inverse = lanes_select(beside, inverse, 1 / lanes_max(x, lanes_set(LANES_REAL_MIN)));
+        at->at = lanes_select(beside, at->at, change);
+        at->value = lanes_select(beside, at->value, power(x, b->exponent));
+        at->inverse = lanes_select(beside, at->inverse, 1 / lanes_max(x, lanes_set(LANES_REAL_MIN)));
+        value = lanes_select(beside, value, at->value);
+        inverse = lanes_select(beside, inverse, at->inverse);
     }
     return (slope_value){value, b->exponent * value * inverse};
 }
 
 BRUNT_INLINE known power_known(const binomial *b, lanes x) {
-    return (known){x, 1 / lanes_max(x, lanes_set(LANES_REAL_MIN)), power(x, b->exponent)};
+    return (known){x, 1 / lanes_max(x, lanes_set(LANES_REAL_MIN)), power(x, b->exponent), lanes_set(0)};
 }
 
 // ln x for x > 0, by that of a ratio within 1/8 of 1, ln((1 + z) / (1 - z)) = 2 (z + z^3/3 + ...); where it is
@@ -161,12 +170,12 @@ BRUNT_INLINE lanes homologous(const real *k, lanes temperature) {
 }
 
 // 1 - T*^m at the end of a step, and its derivative with respect to T.
-BRUNT_INLINE slope_value softening(const law_step *law, known start, lanes temperature, lane_mask wanted) {
+BRUNT_INLINE slope_value softening(const law_step *law, known *start, lanes temperature, lane_mask wanted) {
     const real *k = law->k;
     const lanes zero = lanes_set(0), t = homologous(k, temperature);
     const lane_mask within = (t > 0) & (t < 1);
     if (k[SOFTENING] == 1) return (slope_value){1 - t, lanes_select(within, -k[INVERSE_RANGE] + zero, zero)};
-    const slope_value tm = power_beside(&law->heat, start, t, t - start.x, wanted);
+    const slope_value tm = power_beside(&law->heat, start, t, t - start->x, wanted);
     return (slope_value){1 - tm.value, lanes_select(within, -k[INVERSE_RANGE] * tm.slope, zero)};
 }
 
@@ -179,7 +188,7 @@ BRUNT_INLINE slope_value flow_stress(form f, const law_step *law, const j2_point
     slope_value hard = {lanes_set(k[STATIC]), zero}, rate = {one, zero}, soft = {lanes_set(k[COLD_SOFTENING]), zero};
     lanes heating = zero;
     if (f.hardens) {
-        const slope_value h = power_beside(&law->strain, start->strain, p->plastic_strain + delta, delta, wanted);
+        const slope_value h = power_beside(&law->strain, &start->strain, p->plastic_strain + delta, delta, wanted);
         hard.value += k[POWER] * h.value, hard.slope = k[POWER] * h.slope;
     }
     if (f.rated) {
@@ -193,11 +202,51 @@ BRUNT_INLINE slope_value flow_stress(form f, const law_step *law, const j2_point
         const lanes q = p->q - p->stiffness * delta;
         const lanes temperature = start->temperature + (real)0.5 * k[HEATING] * delta * (p->q_old + q);
         heating = (real)0.5 * k[HEATING] * (p->q_old + q - p->stiffness * delta);
-        soft = softening(law, start->heat, temperature, wanted);
+        soft = softening(law, &start->heat, temperature, wanted);
     }
     return (slope_value){hard.value * rate.value * soft.value,
                          (hard.slope * rate.value + hard.value * rate.slope) * soft.value +
                              hard.value * rate.value * soft.slope * heating};
+}
+
+// Begins the search of lanes `late` with what the rate alone, and what the stiffness alone, would let flow, in series.
+// `yield`: at the start of the step, at the law's own rate.
+BRUNT_INLINE void start_by_rate(form f, const law_step *law, const j2_point *p, lanes yield, lane_mask late,
+                                j2_root *root) {
+    if (!lanes_any(late)) return;
+    const lanes over = p->q - yield;
+    lanes inverse = p->stiffness / over;
+    if (f.rated) inverse += law->inverse_rate_step * lanes_exp(-over / (law->k[RATE] * yield));
+    root->delta = lanes_select(late, 1 / inverse, root->delta);
+}
+
+// Share of the increment. What is left of the equation after such a change is at most an eighth of its square (a power
+// law at its first flow; a logarithm with factor C: C / 2 of it) of the stress, and what slopes are short of, of it.
+#ifdef BRUNT_FLOAT
+#define SETTLED 2e-3f
+#else
+#define SETTLED 2e-5
+#endif
+
+// The increment of lanes that flow, and the stress they flow at; `yield` as above. What did not come to an end is left
+// active.
+BRUNT_INLINE j2_flow search(form f, const law_step *law, const j2_point *p, flow_start *start, lanes yield,
+                            lanes integrity, j2_root *root) {
+    const lane_mask plastic = root->active;
+    lanes q = p->q;
+    start_by_rate(f, law, p, yield, plastic & ~((p->q > p->q_old) & (p->q_old > yield)), root);
+    for (int step = 0; step < J2_ROOT_STEPS && lanes_any(root->active); step++) {
+        slope_value flow = flow_stress(f, law, p, start, root->delta, plastic);
+        if (f.softens) flow.value *= integrity, flow.slope *= integrity;
+        const lane_mask active = root->active;
+        const lanes from = root->delta;
+        j2_root_step(p, root, flow.value, flow.slope);
+        const lanes change = root->delta - from;
+        q = lanes_select(active, lanes_select(root->active, flow.value + flow.slope * change, flow.value), q);
+        if (step == 0) start_by_rate(f, law, p, yield, root->active & (root->delta < (real)0.5 * from), root);
+        root->active &= ~(lanes_abs(change) <= (real)SETTLED * lanes_min(from, root->delta));
+    }
+    return (j2_flow){lanes_select(plastic, root->delta, lanes_set(0)), q};
 }
 
 BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_material_points *points) {
@@ -211,7 +260,7 @@ BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_
         j2_point p = j2_trial(f.dim, k, points, i, &record);
         real *temperature = f.heats ? points->state[j2_slot(f.dim, TEMPERATURE)] + i : NULL;
         lanes delta = zero, q = p.q, cold = lanes_set(k[COLD_SOFTENING]);
-        flow_start start = {.temperature = zero, .rate = {zero, zero, zero}};
+        flow_start start = {.temperature = zero, .rate = {zero, zero, zero, zero}};
         if (f.heats) {
             start.temperature = lanes_load(temperature);
             start.heat = power_known(&law.heat, homologous(k, start.temperature));
@@ -235,15 +284,9 @@ BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_
             j2_root root = j2_root_begin(&p, plastic);
             lane_mask gone = {0};
             if (f.softens) gone = j2_root_collapse(&root, integrity);
-            for (int step = 0; step < J2_ROOT_STEPS && lanes_any(root.active); step++) {
-                slope_value flow = flow_stress(f, &law, &p, &start, root.delta, plastic);
-                if (f.softens) flow.value *= integrity, flow.slope *= integrity;
-                j2_root_step(&p, &root, flow.value, flow.slope);
-                q = flow.value;
-            }
+            const j2_flow flow = search(f, &law, &p, &start, yield * cold, integrity, &root);
             note_first(&record.model, root.active, i);
-            delta = lanes_select(plastic, root.delta, zero);
-            q = lanes_select(plastic, q, p.q);
+            delta = lanes_select(gone, root.delta, flow.delta), q = flow.q;
             if (f.softens) q = lanes_select(gone, zero, q);
             j2_return(f.dim, &p, plastic, q);
         }

@@ -743,6 +743,42 @@ START_TEST(johnson_cook_formula) {
 }
 END_TEST
 
+// The same for points that flow now and then, each at its own rate: slower or faster than before by decades, to and
+// fro, hardly or for the first time.
+START_TEST(johnson_cook_formula_at_any_rate) {
+    enum { POINTS = 3 * BRUNT_LANES, STEPS = 400 };
+    const brunt_model *model = brunt_find_strength("johnson-cook");
+    double parameters[BRUNT_MAX_PARAMETERS];
+    typical_parameters(model, 0, parameters);
+    sample s = sample_create(model, parameters, false, 3, POINTS);
+    const real *temperature = state_of(&s, "temperature"), *strain = state_of(&s, "plastic_strain");
+    uint64_t seed = 7;
+    int flowed = 0;
+    s.points.dt = (real)1e-6;
+    for (int step = 0; step < STEPS; step++) {
+        double before[POINTS];
+        for (int i = 0; i < POINTS; i++) {
+            before[i] = (double)strain[i];
+            set_step(&s, i, random_matrix(&seed, 3, pow(10, -4.5 + 1.75 * uniform(&seed))));
+        }
+        ck_assert_int_lt(try_update(&s).bad, 0);
+        for (int i = 0; i < POINTS; i++) {
+            const double rate = ((double)strain[i] - before[i]) / (double)s.points.dt;
+            if (!(rate > TOLERANCE(0, 1e3))) continue; // in single precision strain takes small increments up in steps
+            const double T = ((double)temperature[i] - 293.15) / (1356 - 293.15),
+                         formula = (90e6 + 292e6 * pow((double)strain[i], 0.31)) * (1 + 0.025 * log(fmax(rate, 1))) *
+                                   (1 - pow(fmin(fmax(T, 0), 1), 1.09)),
+                         q = equivalent(get_stress(&s, i));
+            ck_assert_msg(fabs(q - formula) <= TOLERANCE(1e-9, 2e-2) * formula,
+                          "step %d, point %d, rate %g: %.12g, formula %.12g", step, i, rate, q, formula);
+            flowed++;
+        }
+    }
+    ck_assert_int_gt(flowed, STEPS);
+    sample_destroy(&s);
+}
+END_TEST
+
 // Above the melting point by definition no shear stress; wrong parameters are refused.
 START_TEST(johnson_cook_limits) {
     const brunt_model *model = brunt_find_strength("johnson-cook");
@@ -930,6 +966,7 @@ int main(void) {
     tcase_add_test(closed, von_mises_simple_shear);
     tcase_add_test(closed, von_mises_state_is_isochoric);
     tcase_add_test(closed, johnson_cook_formula);
+    tcase_add_test(closed, johnson_cook_formula_at_any_rate);
     tcase_add_test(closed, johnson_cook_limits);
     tcase_add_test(closed, mie_gruneisen_hugoniot);
     tcase_add_test(closed, mie_gruneisen_heat_and_sound);
