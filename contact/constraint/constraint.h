@@ -172,6 +172,7 @@ typedef struct brunt_constraint_set {
     uint8_t *stirred;  // of each node: what is beside it is told
     size_t corrected_capacity, rests_capacity, drift_capacity, stirred_capacity;
     double kick;            // [s] what springs push over
+    double negligible;      // [m/s] a correction that ends the sweeps, whatever the first one was
     bool gives_back;        // constraints have touches ...
     double leap;            // [m/s] ... what comes faster is lost: it would be thrown past what is near
     double shallow;         // [m] ... what is deeper is given nothing back until it is out again
@@ -242,6 +243,7 @@ void brunt_constraint_give(const brunt_constraint_set *set, const brunt_constrai
 // Gives degree-of-freedom nodes the impulses in `given` and `sum`, while a set is solved.
 void brunt_constraints_apply(brunt_constraint_set *set, int threads, brunt_timer *timer);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
-// first; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED: out of memory.
+// first, or than `negligible`; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED:
+// out of memory.
 int brunt_constraints_solve(brunt_constraint_set *set, int sweeps, double tolerance, int threads, brunt_timer *timer,
                             brunt_error *error);

@@ -547,20 +547,20 @@ static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int thre
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
     brunt_constraints_over_parts(p, threads, share_constraints, timer);
     if (p->parts != 1) brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer); // else none is shared
-    double start = 0, first = 0, greatest = INFINITY, weight = 1;
+    double start = 0, first = 0, enough = 0, greatest = INFINITY, weight = 1;
     if (p->accelerated && brunt_acceleration_begin(p, error)) return BRUNT_FAILED;
     if (brunt_rest_begin(p, error)) return BRUNT_FAILED;
     p->sweeps = 0;
-    while (p->sweeps < sweeps && !(greatest <= tolerance * first)) {
+    while (p->sweeps < sweeps && !(greatest <= enough)) {
         brunt_constraints_over_parts(p, threads, p->sweeps ? solve_chunks : begin_chunks, timer);
         p->sweeps++;
         greatest = 0;
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
-        first = fmax(first, greatest);
+        first = fmax(first, greatest), enough = fmax(tolerance * first, p->negligible);
         if (p->sweeps == 1) start = first;
         p->still = p->accelerated ? 0 : AT_REST * tolerance * first;
         if (p->accelerated) weight = brunt_acceleration_next(p, chunks, weight);
-        if (p->sweeps == sweeps || greatest <= tolerance * first) p->momentum = 0;
+        if (p->sweeps == sweeps || greatest <= enough) p->momentum = 0;
         brunt_constraints_apply(p, threads, timer);
     }
     p->still = 0;

@@ -58,6 +58,7 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
     brunt_constraints_clear(set);
     set->gives_back = work->def->touch == BRUNT_TOUCH_ELASTIC;
     set->kick = m->kick;
+    set->negligible = BRUNT_NEGLIGIBLE * m->surface->mean_edge / m->dt;
     set->leap = BRUNT_LEAP * m->surface->mean_edge / m->dt;
     set->shallow = BRUNT_SHALLOW * m->surface->mean_edge;
     if (set->gives_back && brunt_node_touches_make(facets, m->surface->node_count, error)) return BRUNT_FAILED;

@@ -17,6 +17,13 @@
 #define BRUNT_LEAP 0.25    // mean edges: how far a node may come in a step and be thrown back: as far as is searched
 #define BRUNT_SHALLOW 0.02 // mean edges: depths that may be pushed out against a load
 
+// Mean edges a step: approaches of rounding.
+#ifdef BRUNT_FLOAT
+#define BRUNT_NEGLIGIBLE 1e-7
+#else
+#define BRUNT_NEGLIGIBLE 1e-13
+#endif
+
 // Marks in surface->active which bodies have another one, or a boundary (planes with condition separate and
 // others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. BRUNT_OK, or BRUNT_FAILED: out of
 // memory, or (`far`) a place or a way of a step is not a number that can be worked with.

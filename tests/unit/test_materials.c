@@ -774,7 +774,7 @@ START_TEST(johnson_cook_formula_at_any_rate) {
             flowed++;
         }
     }
-    ck_assert_int_gt(flowed, STEPS);
+    ck_assert_int_gt(flowed, TOLERANCE(STEPS, STEPS / 4));
     sample_destroy(&s);
 }
 END_TEST
