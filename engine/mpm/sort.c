@@ -9,11 +9,12 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "base/simd.h"
+#include "base/simd_math.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "grid/background.h"
+#include "mpm/node_window.h"
 #include "mpm/sort_parts.h"
 
 void brunt_sort_workspace_free(brunt_sort_workspace *workspace) {
@@ -74,7 +75,8 @@ static bool find_triangle(const brunt_grid *grid, real *const *x, int64_t s, int
     return true;
 }
 
-BRUNT_INLINE void find_places_of(sort_job *j, sort_range *r, bool mesh) {
+// The particles begin .. end of a range, one by one; `mesh`: of the grid.
+BRUNT_INLINE void find_places_of(sort_job *j, sort_range *r, int64_t begin, int64_t end, bool mesh) {
     const brunt_grid *grid = j->grid;
     brunt_particles *p = j->particles;
     real *const *x = brunt_kernel_position(p);
@@ -82,8 +84,7 @@ BRUNT_INLINE void find_places_of(sort_job *j, sort_range *r, bool mesh) {
     uint64_t last_key = UINT64_MAX;
     int32_t last = -1;
     uint8_t *changed = j->workspace->changed;
-    r->bad = -1, r->moved = r->lost = false, r->missing_count = r->mover_count = 0;
-    for (int64_t s = r->begin; s < r->end; s++) {
+    for (int64_t s = begin; s < end; s++) {
         int32_t block[3];
         int bin;
         if (p->id[s] < 0) continue;
@@ -108,15 +109,57 @@ BRUNT_INLINE void find_places_of(sort_job *j, sort_range *r, bool mesh) {
     }
 }
 
+// How far inside its bin a particle is at least, in cells, of which no rounding of its place makes another bin.
+static real clear_of_rounding(const brunt_grid *grid, const brunt_block *block) {
+    int32_t most = 0;
+    for (int a = 0; a < grid->dim; a++) most = abs(block->coord[a]) > most ? abs(block->coord[a]) : most;
+    return 16 * LANES_REAL_EPSILON * (real)(((double)most + 2) * grid->side);
+}
+
+// Whether all particles of a vector are clearly in the bins of the last sort; `corner`: of their block, in cells from
+// the origin.
+BRUNT_INLINE bool all_stay(const brunt_grid *grid, const brunt_particles *p, real *const *x, int64_t s,
+                           const real corner[3], real clear, int dim) {
+    lane_mask stays = lanes_set(0) == lanes_set(0);
+    for (int a = 0; a < dim; a++) {
+        const lanes cells = (lanes_load(x[a] + s) - (real)grid->origin[a]) * grid->inv_h,
+                    within = cells - corner[a] - bin_coordinate(p->bin + s, dim, a);
+        stays &= (within > clear) & (within < 1 - clear);
+    }
+    return !lanes_any(~stays);
+}
+
+// Those of one block, a vector at a time while they stay.
+BRUNT_INLINE void find_places_in(sort_job *j, sort_range *r, const brunt_block *block, int dim) {
+    const brunt_grid *grid = j->grid;
+    const brunt_particles *p = j->particles;
+    real *const *x = brunt_kernel_position(p);
+    const real clear = clear_of_rounding(grid, block);
+    real corner[3] = {0};
+    for (int a = 0; a < dim; a++) corner[a] = (real)((double)block->coord[a] * grid->side + 0.5 * (grid->order - 1));
+    for (int64_t s = block->first; s < block->first + block->count; s += BRUNT_LANES)
+        if (!all_stay(grid, p, x, s, corner, clear, dim)) find_places_of(j, r, s, s + BRUNT_LANES, false);
+}
+
 // Round one. key[] gets block rank * 64 + bin; of a particle whose block is not alive yet, nothing.
 static void find_places(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     sort_job *j = context;
-    for (int64_t q = begin; q < end; q++)
-        if (j->grid->mesh)
-            find_places_of(j, &j->ranges[q], true);
+    const brunt_grid *grid = j->grid;
+    for (int64_t q = begin; q < end; q++) {
+        sort_range *r = &j->ranges[q];
+        r->bad = -1, r->moved = r->lost = false, r->missing_count = r->mover_count = 0;
+        if (grid->mesh)
+            find_places_of(j, r, r->begin, r->end, true);
+        else if (j->renewed)
+            find_places_of(j, r, r->begin, r->end, false);
         else
-            find_places_of(j, &j->ranges[q], false);
+            for (int32_t b = r->first_block; b < r->end_block; b++)
+                if (grid->dim == 3)
+                    find_places_in(j, r, &grid->blocks[b], 3);
+                else
+                    find_places_in(j, r, &grid->blocks[b], 2);
+    }
 }
 
 static int compare_keys(const void *a, const void *b) {
@@ -387,7 +430,8 @@ static void cut_ranges(sort_job *j) {
         sort_range *r = &j->ranges[q];
         r->begin = q ? j->ranges[q - 1].end : 0;
         r->end = p->slots * (q + 1) / ranges;
-        if (!j->renewed && q + 1 < ranges) r->end = j->grid->blocks[blocks * (q + 1) / ranges].first;
+        r->first_block = (int32_t)(blocks * q / ranges), r->end_block = (int32_t)(blocks * (q + 1) / ranges);
+        if (!j->renewed && q + 1 < ranges) r->end = j->grid->blocks[r->end_block].first;
     }
 }
 

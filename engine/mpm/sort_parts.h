@@ -17,9 +17,10 @@ typedef struct sort_mover {
 // What one range of particles finds in the first round.
 typedef struct sort_range {
     int64_t begin, end;
-    int64_t bad; // slot of a particle that cannot be placed, -1
-    bool lost;   // there was no memory for one more that is missing, or moves
-    bool moved;  // some particle is not where the last sort put it
+    int32_t first_block, end_block; // that it is of, once there are blocks
+    int64_t bad;                    // slot of a particle that cannot be placed, -1
+    bool lost;                      // there was no memory for one more that is missing, or moves
+    bool moved;                     // some particle is not where the last sort put it
     uint64_t *missing;
     size_t missing_capacity;
     int64_t missing_count;

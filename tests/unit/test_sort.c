@@ -165,6 +165,46 @@ START_TEST(order_is_that_of_a_sort_of_all) {
 }
 END_TEST
 
+// Points on the borders of bins, and a few last digits to either side of them, near the origin and far from it; cells
+// that are a power of 2, so that nothing of that is rounded.
+START_TEST(borders_are_of_the_upper_bin) {
+    static const double far[] = {0, -3, 500}, cell = 0.125;
+    enum { NUDGES = 4 };
+    brunt_world_def def = def_begin(2 + _i % 2, cell);
+    const double at = far[_i / 2];
+    def.kernel = _i % 4 < 2 ? BRUNT_QUADRATIC : BRUNT_CUBIC;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def_box(&def, "block", XYZ(at, at, def.dimension == 3 ? at : 0),
+            XYZ(at + 1.1, at + 0.9, def.dimension == 3 ? at + 0.7 : 0))
+        ->spacing = 0.5 * cell;
+    brunt_world *world = world_take(&def);
+    brunt_body *body = &world->bodies.mpm[0];
+    brunt_particles *p = &body->particles;
+    real **x = brunt_field(p, BRUNT_FIELD_position);
+    uint64_t state = 3;
+    for (int step = 0; step < 40; step++) {
+        for (int64_t s = 0; s < p->slots; s++)
+            for (int a = 0; a < p->dim && p->id[s] >= 0; a++) {
+                const int nudge = (int)draw_between(&state, -NUDGES, NUDGES + 1);
+                real to = (real)(0.5 * cell * round((double)x[a][s] / (0.5 * cell)));
+                for (int k = 0; k < abs(nudge); k++)
+                    to = (real)(sizeof(real) == 4 ? (double)nextafterf((float)to, nudge < 0 ? -1e9f : 1e9f)
+                                                  : nextafter((double)to, nudge < 0 ? -1e9 : 1e9));
+                x[a][s] = to;
+            }
+        ck_assert_int_eq(brunt_sort(&body->grid, p, 1, NULL, NULL), BRUNT_OK);
+        for (int32_t b = 0; b < body->grid.block_count; b++)
+            for (int32_t i = 0; i < body->grid.blocks[b].count; i++) {
+                const int64_t s = body->grid.blocks[b].first + i;
+                const entry e = entry_of(&body->grid, x, s);
+                ck_assert(e.block == body->grid.block_key[b] && e.bin == p->bin[s]);
+            }
+    }
+    ck_assert_int_gt(p->moved + p->moves, 40);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // A few points that go from block to block and back move those blocks alone.
 START_TEST(the_rest_stays) {
     brunt_world_def def = def_begin(3, h);
@@ -195,6 +235,7 @@ int main(void) {
     Suite *suite = suite_create("sort");
     TCase *tests = tcase_create("sort");
     tcase_add_loop_test(tests, order_is_that_of_a_sort_of_all, 0, FORMS);
+    tcase_add_loop_test(tests, borders_are_of_the_upper_bin, 0, 6);
     tcase_add_test(tests, the_rest_stays);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
