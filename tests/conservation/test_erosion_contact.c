@@ -89,14 +89,20 @@ static bool in_tet(const double *const p[4], const double x[3]) {
     return u > 0 && v > 0 && w > 0 && u + v + w < 1;
 }
 
+// Most points are not in the box of its nodes, which holds all of it.
 static bool in_element(const brunt_fem_body *fem, int32_t slot, const double x[3]) {
     const int n = fem->traits->nodes;
+    const int32_t *node = fem->element_node + (int64_t)slot * n;
     double p[8][3], centre[3] = {0};
-    for (int c = 0; c < n; c++)
-        for (int a = 0; a < 3; a++) {
-            p[c][a] = (double)brunt_fem_node(fem, fem->element_node[(int64_t)slot * n + c])[a];
+    for (int a = 0; a < fem->dim; a++) {
+        bool below = false, above = false;
+        for (int c = 0; c < n; c++) {
+            p[c][a] = (double)brunt_fem_node(fem, node[c])[a];
+            below = below || p[c][a] <= x[a], above = above || p[c][a] >= x[a];
             centre[a] += p[c][a] / n;
         }
+        if (!below || !above) return false;
+    }
     if (fem->dim == 2) {
         for (int c = 0; c < n; c++) {
             const double *u = p[c], *v = p[(c + 1) % n];
