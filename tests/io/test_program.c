@@ -148,6 +148,28 @@ static void same_results(const char *a, const char *b) {
 #define SLOW "--set grid.cell=0.0125 --set time.cfl=0.25 "
 #endif
 
+// What runs that are broken off are compared with, made once: whole_1 and whole_2, of one thread and of two.
+static char whole_folder[sizeof small_folder];
+
+static void make_whole_runs(void) {
+    set_up();
+    expect("run %s/small.yaml -o %s/whole_1 -q -t 1 " SLOW, 0, NULL);
+    expect("run %s/small.yaml -o %s/whole_2 -q -t 2 " SLOW, 0, NULL);
+    strcpy(whole_folder, small_folder);
+}
+
+static void remove_whole_runs(void) {
+    strcpy(small_folder, whole_folder);
+    small_folder_remove();
+}
+
+// The one with as many threads as the test's runs have, in the test's folder as "whole".
+static void take_whole_run(void) {
+    char path[sizeof whole_folder + 16];
+    snprintf(path, sizeof path, "%s/whole_%s", whole_folder, threads);
+    ck_assert_int_eq(symlink(path, small_path("whole")), 0);
+}
+
 START_TEST(bad_usage_is_64) {
     static const char *const cases[] = {"",
                                         "walk",
@@ -374,7 +396,7 @@ END_TEST
 // of the run's own time on a processor, so that it comes as far on any machine: SIGPROF ends it as SIGKILL does.
 START_TEST(killed_and_resumed_is_the_same_run) {
     threads = _i ? "2" : "1";
-    expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
+    take_whole_run();
     unsigned seed = (unsigned)time(NULL) ^ (unsigned)getpid();
     printf("kill times are drawn from seed %u\n", seed);
     json_t *summary = summary_of("whole");
@@ -405,7 +427,7 @@ END_TEST
 START_TEST(asked_to_stop_is_75_and_resumes) {
     static const int signals[] = {SIGTERM, SIGINT, SIGHUP, SIGTERM};
     threads = _i < 3 ? "1" : "2";
-    expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
+    take_whole_run();
     // At intervals of wall time only, so that the checkpoint is the signal's.
     pid_t child =
         start("run %s/small.yaml -o %s/stopped -q --set output.checkpoint=10min " SLOW, small_path("output"), 0);
@@ -467,7 +489,7 @@ END_TEST
 // A file that may not grow beyond what a checkpoint needs: as a full disk, without needing one.
 START_TEST(a_checkpoint_that_cannot_be_written_is_74) {
     threads = _i ? "2" : "1";
-    expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
+    take_whole_run();
     pid_t child = start("run %s/small.yaml -o %s/out -q " SLOW, small_path("output"), 0);
     while (!exists("out/vtu/left_000004.vtu")) wait_seconds(0.002);
     kill(child, SIGTERM);
@@ -558,14 +580,18 @@ int main(void) {
     tcase_add_test(commands, quiet_is_quiet_and_the_log_keeps_all);
     tcase_add_test(commands, a_fresh_run_replaces_the_old_one);
     tcase_add_test(commands, threads_change_nothing);
-    tcase_add_loop_test(commands, killed_and_resumed_is_the_same_run, 0, 2);
-    tcase_add_loop_test(commands, asked_to_stop_is_75_and_resumes, 0, 4);
     tcase_add_loop_test(commands, usr1_saves_and_goes_on, 0, 2);
     tcase_add_loop_test(commands, a_failing_run_is_70_and_leaves_what_to_look_at, 0, 2);
-    tcase_add_loop_test(commands, a_checkpoint_that_cannot_be_written_is_74, 0, 2);
     tcase_add_loop_test(commands, a_picture_that_cannot_be_written_comes_before_a_step_that_fails, 0, 2);
     tcase_add_loop_test(commands, a_full_disk_is_74_and_leaves_a_whole_checkpoint, 0, 2);
     tcase_add_test(commands, a_damaged_checkpoint_is_65);
     suite_add_tcase(suite, commands);
+    TCase *broken_off = tcase_create("broken off");
+    tcase_add_unchecked_fixture(broken_off, make_whole_runs, remove_whole_runs);
+    tcase_add_checked_fixture(broken_off, set_up, small_folder_remove);
+    tcase_add_loop_test(broken_off, killed_and_resumed_is_the_same_run, 0, 2);
+    tcase_add_loop_test(broken_off, asked_to_stop_is_75_and_resumes, 0, 4);
+    tcase_add_loop_test(broken_off, a_checkpoint_that_cannot_be_written_is_74, 0, 2);
+    suite_add_tcase(suite, broken_off);
     return suite_main(suite);
 }
