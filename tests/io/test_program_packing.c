@@ -467,19 +467,21 @@ int main(void) {
     tcase_add_checked_fixture(tests, small_folder_make, small_folder_remove);
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, links_are_told);
-    tcase_add_test(tests, hexagonal_packings_settle);
     tcase_add_test(tests, round_rims_settle_soon);
     tcase_add_test(tests, what_begins_apart_flies_into_nothing);
     tcase_add_test(tests, hard_packings_settle_or_say_why);
-    tcase_add_test(tests, hard_hexagons_settle);
     tcase_add_test(tests, what_touches_nothing);
-    tcase_add_test(tests, joined_disks_stay_outside);
     tcase_add_test(tests, load_is_turned_round);
     tcase_add_test(tests, packings_without_loads_come_apart);
-    tcase_add_test(tests, what_slides_apart_is_told);
     tcase_add_loop_test(tests, condensed_crowds_are_as_whole_ones, 2, 4);
-    tcase_add_loop_test(tests, pyramid_falls_below_its_friction, 0, 3);
-    tcase_add_loop_test(tests, pyramid_of_six_stands_above_its_friction_alone, 0, 3);
+    tcase_add_loop_test(tests, pyramid_falls_below_its_friction, 0, SANITIZED ? 2 : 3);
+    if (!SANITIZED) { // not a branch there that the others do not take
+        tcase_add_test(tests, hexagonal_packings_settle);
+        tcase_add_test(tests, hard_hexagons_settle);
+        tcase_add_test(tests, joined_disks_stay_outside);
+        tcase_add_test(tests, what_slides_apart_is_told);
+        tcase_add_loop_test(tests, pyramid_of_six_stands_above_its_friction_alone, 0, 3);
+    }
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }

@@ -157,7 +157,7 @@ static double flip_vibrates(double cfl, bool per_step) {
 START_TEST(flip_is_no_matter_of_the_step) {
     static const double cfl[] = {0.1, 0.3, 0.5, 0.8};
     double least[2] = {1, 1}, most[2] = {0, 0};
-    for (int k = 0; k < 4; k++)
+    for (int k = SANITIZED; k < 4; k++)
         for (int per_step = 0; per_step < 2; per_step++) {
             const double kept = flip_vibrates(cfl[k], per_step);
             least[per_step] = fmin(least[per_step], kept), most[per_step] = fmax(most[per_step], kept);
@@ -458,7 +458,7 @@ int main(void) {
     ADD_LOOP(kept_is_in_proportion, 8);
     ADD_LOOP(rings_keep_a_share, 2);
     ADD_LOOP(momenta_of_any_motion, 4);
-    ADD_LOOP(twenty_turns, 1);
+    if (!SANITIZED) ADD_LOOP(twenty_turns, 1); // thousands of steps like those of others
     ADD_LOOP(flying_is_rest, 4);
     ADD_LOOP(walls_bear_what_is_missing, 16);
     ADD_LOOP(a_mirror_bears_what_flip_lacks, 12);
