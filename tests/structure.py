@@ -35,7 +35,7 @@ LIMITS = {
     "functions with over 7 parameters": 0, "lines of the largest file": 599, "files over 600 lines": 0,
     "tables that nothing counts": 0, "pointers to void pointers": 0, "lines that return -1": 0,
     "words not of plain English": 0, "words of before": 0,
-    "lines repeated in blocks of six": 0, "terms not found": 0,
+    "lines repeated in blocks of six": 0, "terms not found": 0, "suites of label double that go through single precision": 0,
 }
 # Words that were the project's own for what the field has a term for (CONTRIBUTING.md), as parts of identifiers; and where one
 # of them means something else: (paths, identifiers, what it means there).
@@ -268,6 +268,7 @@ def figures():
     words = [place for f in texts() for place in wordings(f)]
     old = [place for f in files for place in before(f)]
     lost = [term for term, found in terms() if not found]
+    single = list(in_single())
     return [
         ("arrows against the order", len(arrows), [f"{a} -> {b}" for a, b in arrows]),
         ("circles of files", len(loops), [" ".join(loop) for loop in loops]),
@@ -288,8 +289,31 @@ def figures():
         ("words of before", len(old), old),
         ("lines repeated in blocks of six", copies, copied),
         ("terms not found", len(lost), lost),
+        ("suites of label double that go through single precision", len(single), single),
         ("lines", sum(size.values()), []),
     ]
+
+
+def in_single():
+    """What suites of label double, which are not built in single precision, go through that has numbers of the precision: of the
+    headers they include, the sources beside these, and what those include; but for public ones, and those where it is said what
+    such a number is."""
+    known = [f for f in sources() if "/include/" not in f]
+    for suite in sorted((ROOT / "tests").glob("*/test_*.c")):
+        if not re.search(r"^// Labels: .*\bdouble\b", suite.read_text(), re.M):
+            continue
+        seen, ahead = set(), [str(suite.relative_to(ROOT))]
+        while ahead:
+            f = ahead.pop()
+            if f in seen or not (ROOT / f).exists() or f in ("engine/base/real.h", "engine/base/simd.h"):
+                continue
+            seen.add(f)
+            text = code(f)
+            if re.search(r"\b(real|lanes(_\w+)?|lane_(int|mask)|BRUNT_(FLOAT|LANES|LANE_BYTES|REAL_NAME))\b", text):
+                yield f"{suite.stem}: {f}"
+            for name in re.findall(r'#include "(.+?)"', (ROOT / f).read_text()):
+                ahead += [k for k in (name, "engine/" + name) if k in known or k.startswith("tests/")]
+            ahead += [f[:-1] + "c"] if f.endswith(".h") else []
 
 
 def terms():

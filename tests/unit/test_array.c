@@ -1,3 +1,4 @@
+// Labels: double
 // Growable arrays: what they keep, what is zero, when a block is taken.
 #include <check.h>
 #include <stdint.h>

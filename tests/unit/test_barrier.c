@@ -1,3 +1,4 @@
+// Labels: double
 // What the barrier is made of: its function, distances of points, edges and triangles with their derivatives, and the
 // search for what is near.
 #include <check.h>

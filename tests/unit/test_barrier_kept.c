@@ -1,3 +1,4 @@
+// Labels: double
 // What a barrier remembers from one look to the next: lists of what is near, and how far points are from bodies that
 // they are clear of. One that is asked along a way of long and short steps says the same, to the last digit, as one
 // that has just begun.

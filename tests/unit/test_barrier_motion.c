@@ -1,3 +1,4 @@
+// Labels: double
 // How far a step may go, planes, and friction by closed forms.
 #include "contact/barrier/barrier_function.h"
 #include "tests/support/barrier_case.h"

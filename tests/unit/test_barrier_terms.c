@@ -1,3 +1,4 @@
+// Labels: double
 // The terms `barrier` and `friction` whole: derivatives, sums over vertices and edges, momenta, same bits.
 #include "base/memory.h"
 #include "contact/barrier/barrier_function.h"

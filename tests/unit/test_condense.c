@@ -1,3 +1,4 @@
+// Labels: double
 // Bodies without the nodes that nothing touches: Newton's method goes where it goes with all of them, step by step,
 // whatever is touched, and to the same bits for any number of threads; nodes that are left out are alone in the matrix.
 #include <check.h>

@@ -1,3 +1,4 @@
+// Labels: double
 // Nodes that follow others: the matrix of what is left is that of differences of its gradient, with and without its
 // entries; Newton's method goes to the same minimum as without them.
 #include <check.h>

@@ -1,3 +1,4 @@
+// Labels: double
 // Whether threads pay (base/gain.h), on machines that are made up: no clock is read but where phases are really run.
 #include "tests/support/suite.h"
 

@@ -1,3 +1,4 @@
+// Labels: double
 // Block matrices against dense ones, solvers against Gauss, what they say of matrices that are not positive definite,
 // and the same bits for any number of threads.
 #include <check.h>

@@ -1,3 +1,4 @@
+// Labels: double
 // Newton's method on small sums of terms whose minimum is known: how fast, how it gets out of what is not positive
 // definite, and what it says where there is no minimum.
 #include <check.h>

@@ -1,3 +1,4 @@
+// Labels: double
 // Surfaces that may overlap: gaps with a sign, forces that go on through 0 and have a potential, how far a step may go.
 #include "contact/barrier/barrier_function.h"
 #include "contact/barrier/closest.h"

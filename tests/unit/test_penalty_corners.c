@@ -1,3 +1,4 @@
+// Labels: double
 // Corners of surfaces that may overlap: what points within them store, that it goes on without a step or a kink where
 // they pass around one, and that forces and their slopes are those of it.
 #include "contact/barrier/closest.h"

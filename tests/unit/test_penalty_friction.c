@@ -1,3 +1,4 @@
+// Labels: double
 // Friction of surfaces that may overlap, on the way to where it is Coulomb's: how deep they may come where slips press
 // them together, slopes of that, what a vertex keeps of more than it has room for; and pushes of what is as near to
 // two sides.
