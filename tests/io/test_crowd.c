@@ -202,6 +202,36 @@ START_TEST(members_are_of_their_number_alone) {
 }
 END_TEST
 
+// One-way contact of each member with the floor, whichever of them is the slave, in a scene and as it is written again.
+START_TEST(sides_are_those_of_each_pair) {
+    static const char *const between[] = {"[grains, zfloor], sides: slave", "[zfloor, grains], sides: slave",
+                                          "[zfloor, grains], sides: both", "[zfloor, grains]"};
+    char text[2048];
+    snprintf(text, sizeof text,
+             HEAD GRAINS("[4, 3]", "") FLOOR("zfloor") "contact: {method: augury, pairs: [{between: %s}]}\n",
+             between[_i]);
+    for (int again = 0; again < 2; again++) {
+        brunt_scene scene;
+        char *written;
+        size_t size;
+        read_crowd(text, &scene);
+        const brunt_contact_def *contact = &scene.world.contact;
+        ck_assert_int_eq(contact->pair_count, 12);
+        for (int k = 0; k < 12; k++) {
+            ck_assert_int_eq(contact->pairs[k].sides, _i < 2 ? BRUNT_SIDES_SLAVE : BRUNT_SIDES_BOTH);
+            ck_assert_int_eq(strcmp(contact->pairs[k].a, "zfloor") == 0, _i > 0);
+        }
+        FILE *out = open_memstream(&written, &size);
+        ck_assert_int_eq(brunt_scene_write(&scene, out), BRUNT_OK);
+        fclose(out);
+        ck_assert(strlen(written) < sizeof text);
+        strcpy(text, written);
+        free(written);
+        brunt_scene_free(&scene);
+    }
+}
+END_TEST
+
 START_TEST(resolved_scene_is_the_same) {
     brunt_scene scene, again;
     char *text[2];
@@ -322,6 +352,7 @@ int main(void) {
     tcase_add_test(draws, hex_has_the_rows_of_the_packing);
     tcase_add_test(draws, shifted_members_stay_apart);
     tcase_add_test(draws, members_are_of_their_number_alone);
+    tcase_add_loop_test(draws, sides_are_those_of_each_pair, 0, 4);
     tcase_add_test(draws, resolved_scene_is_the_same);
     tcase_add_test(draws, memory_grows_with_the_members);
     tcase_add_checked_fixture(program, small_folder_make, small_folder_remove);
