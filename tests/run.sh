@@ -133,7 +133,7 @@ kernels="test_lanes test_materials test_elements test_axisymmetric_elements test
 # shellcheck disable=SC2086
 check "build without vectors" build scalar --target $kernels &&
     run build-scalar -R "$(among "$kernels")"
-some="test_erosion_contact test_point_erosion test_total_lagrangian"
+some="test_contact_sides test_erosion_contact test_point_erosion test_total_lagrangian"
 # Not what does one thing a thousand times, and others do once.
 # shellcheck disable=SC2086
 check "build under the sanitizers" build asan --target brunt_program tests_unit tests_io $some &&
