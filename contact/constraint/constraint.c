@@ -19,6 +19,7 @@ void brunt_constraints_validate(const brunt_constraint_set *p) {
         for (int e = 0; e < end - c->first; e++)
             BRUNT_ASSERT(brunt_constraint_node(p, k, e) >= 0 && brunt_constraint_node(p, k, e) < p->dof_node_count);
         BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
+        BRUNT_ASSERT(!c->touch || !c->friction_point); // what is given back rubs where it pushes
         BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
         BRUNT_ASSERT(c->account && c->friction >= 0 && c->spring >= 0 && (c->spring > 0 || c->least <= 0));
         BRUNT_ASSERT(c->normal_impulse >= fmin(c->least, 0));
@@ -61,7 +62,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->dof_past);
     brunt_free(p->turned_back);
     brunt_free(p->release);
-    brunt_free(p->kicks);
+    brunt_free(p->kicks), brunt_free(p->settled), brunt_free(p->kicked);
     memset(p, 0, sizeof *p);
 }
 

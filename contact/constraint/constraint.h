@@ -171,14 +171,15 @@ typedef struct brunt_constraint_set {
     double *drift;     // [m/s] of each node since what is beside it was told
     uint8_t *stirred;  // of each node: what is beside it is told
     size_t corrected_capacity, rests_capacity, drift_capacity, stirred_capacity;
-    double kick;            // [s] what springs push over
-    double negligible;      // [m/s] a correction that ends the sweeps, whatever the first one was
-    bool gives_back;        // constraints have touches ...
-    double leap;            // [m/s] ... what comes faster is lost: it would be thrown past what is near
-    double shallow;         // [m] ... what is deeper is given nothing back until it is out again
-    brunt_release *release; // of each
-    brunt_kick *kicks;      // of each, while some give back
-    size_t release_capacity, kicks_capacity;
+    double kick;               // [s] what springs push over
+    double negligible;         // [m/s] a correction that ends the sweeps, whatever the first one was
+    bool gives_back;           // constraints have touches ...
+    double leap;               // [m/s] ... what comes faster is lost: it would be thrown past what is near
+    double shallow;            // [m] ... what is deeper is given nothing back until it is out again
+    brunt_release *release;    // of each
+    brunt_kick *kicks;         // of each, while some give back
+    int32_t *settled, *kicked; // constraints that give back or owe, in their order; nodes that they give to
+    size_t release_capacity, kicks_capacity, settled_capacity, kicked_capacity;
     // Of accelerated sweeps, else unused: what points and nodes had after the sweep before, and of each chunk how much
     // of its correction goes back on the last one's (see solve.c).
     bool accelerated;
@@ -240,7 +241,8 @@ void brunt_constraint_rub(const brunt_constraint_set *set, brunt_constraint *con
 // of the first: of shared nodes `given`, of the others `sum`.
 void brunt_constraint_give(const brunt_constraint_set *set, const brunt_constraint *constraint, const double push[3],
                            const double rub[3]);
-// Gives degree-of-freedom nodes the impulses in `given` and `sum`, while a set is solved.
+// Gives a degree-of-freedom node its impulse in `given` or `sum`, while a set is solved; and all of them.
+void brunt_constraints_move(const brunt_constraint_set *set, int64_t node);
 void brunt_constraints_apply(brunt_constraint_set *set, int threads, brunt_timer *timer);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first, or than `negligible`; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED:

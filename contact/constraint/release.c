@@ -6,9 +6,8 @@
 #include "base/array.h"
 #include "base/vector.h"
 #include "contact/constraint/block.h"
-#include "contact/constraint/parts.h"
 
-enum { GRAIN = 128, ROUNDS = 16 };
+enum { GRAIN = 64, ROUNDS = 16 };
 static const double LEAST_PUSH = 1e-9;   // of what would stop it
 static const double LEAST_TAKEN = 1e-3;  // of what the impulse would take of its own mass alone
 static const double LEAST_MOTION = 1e-6; // of the energy of its motion, whichever way: at least so much is that
@@ -23,7 +22,6 @@ struct brunt_release {
     int32_t partner;           // the constraint's
     bool pushes;               // by more than rounding, as of what slides along a wall
     bool may;                  // one that does not push may give back
-    bool settled;              // it releases
 };
 
 // What a touch gives back.
@@ -32,6 +30,7 @@ struct brunt_kick {
     double work;    // [J] of it, beyond what the pushes would have done without
     double pressed; // [m/s] by how much the pushes of the step have changed u_n
     double left;    // [J] of what it is to give back; below 0: too much was given, since others gave beside it
+    double push[3]; // [N s] of a round, with friction: what has a touch rubs where it pushes
 };
 typedef brunt_kick kick;
 
@@ -130,16 +129,41 @@ static double share(const brunt_release *r) {
     return r->touch->held / (releases(r) ? r->touch->releases : r->touch->met);
 }
 
-// What is left, of each constraint, of each pair and in all.
-static double sum_left(brunt_constraint_set *p) {
-    double all = 0;
-    for (int32_t k = 0; k < p->constraint_count; k++)
-        p->constraint[k].account->unspent = p->constraint[k].account->overspent = 0;
+// Those of a step that give back or owe, which no round changes.
+typedef struct round_job {
+    brunt_constraint_set *set;
+    int32_t settled, kicked; // how many
+} round_job;
+
+// Lists them and the nodes of those that give back, and makes their entries: kicks go over single constraints.
+static void list_settled(round_job *j) {
+    brunt_constraint_set *p = j->set;
+    j->settled = j->kicked = 0;
+    memset(p->shared, true, (size_t)p->dof_node_count); // but what is listed
     for (int32_t k = 0; k < p->constraint_count; k++) {
-        const brunt_release *r = &p->release[k];
-        if (!is_settled(r)) continue;
+        brunt_constraint *c = &p->constraint[k];
+        if (!is_settled(&p->release[k])) continue;
+        p->settled[j->settled++] = k, p->kicks[k] = (kick){.impulse = 0};
+        brunt_block_write_entries(p, k / BRUNT_DOUBLES);
+        for (int32_t e = c->first; e < c->first + c->count && releases(&p->release[k]); e++) {
+            const int32_t node = p->entry[e].dof_node;
+            if (p->shared[node]) p->shared[node] = false, p->kicked[j->kicked++] = node;
+        }
+    }
+}
+
+// What is left, of each constraint, of each pair and in all.
+static double sum_left(const round_job *j) {
+    const brunt_constraint_set *p = j->set;
+    double all = 0;
+    for (int32_t i = 0; i < j->settled; i++) {
+        brunt_impulse_account *account = p->constraint[p->settled[i]].account;
+        account->unspent = account->overspent = 0;
+    }
+    for (int32_t i = 0; i < j->settled; i++) {
+        const int32_t k = p->settled[i];
         brunt_impulse_account *account = p->constraint[k].account;
-        const double left = p->kicks[k].left = share(r) - p->kicks[k].work;
+        const double left = p->kicks[k].left = share(&p->release[k]) - p->kicks[k].work;
         *(left > 0 ? &account->unspent : &account->overspent) += fabs(left);
         all += fmax(left, 0);
     }
@@ -148,89 +172,88 @@ static double sum_left(brunt_constraint_set *p) {
 
 // The impulse with which what is left of a constraint is given back, and its friction: that its work, as far as all
 // give alike, is that.
-static void give_back(const brunt_constraint_set *p, brunt_constraint *c, kick *given, double push[3], double rub[3]) {
+static void give_back(const brunt_constraint_set *p, brunt_constraint *c, kick *given) {
     const double unit = c->scale / c->row_sum, left = payable(c->account) * given->left;
+    for (int a = 0; a < 3; a++) given->push[a] = 0;
     if (!(left > 0)) return;
     if (!(given->impulse > 0)) given->pressed = pressed(p, c);
     const double b = along(p, c, true) + along(p, c, false) + given->pressed + given->impulse / unit;
     const double J = 0.5 * unit * (sqrt(b * b + 8 * left / unit) - b);
     c->normal_impulse = given->impulse += J;
-    for (int a = 0; a < 3; a++) push[a] = J * c->n[a];
-    if (c->friction > 0) brunt_constraint_rub(p, c, rub);
+    for (int a = 0; a < 3; a++) given->push[a] = J * c->n[a];
+    if (c->friction > 0) brunt_constraint_rub(p, c, given->push);
 }
 
-// Kicks go over single constraints.
-static void write_entries(void *context, int64_t begin, int64_t end, int worker) {
+static void find_kicks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k += BRUNT_DOUBLES)
-        brunt_block_write_entries(p, k / BRUNT_DOUBLES);
-}
-
-static void give(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
-        brunt_constraint *c = &p->constraint[k];
-        double push[3] = {0}, apart[3] = {0};
-        if (releases(&p->release[k])) give_back(p, c, &p->kicks[k], push, c->friction_point ? apart : push);
-        brunt_constraint_give(p, c, push, apart);
+    const round_job *j = context;
+    const brunt_constraint_set *p = j->set;
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t k = p->settled[i];
+        if (releases(&p->release[k])) give_back(p, &p->constraint[k], &p->kicks[k]);
     }
+}
+
+// In the order of the constraints, as sums are.
+static void give_kicks(const round_job *j) {
+    const brunt_constraint_set *p = j->set;
+    for (int32_t i = 0; i < j->settled; i++) {
+        const int32_t k = p->settled[i];
+        if (releases(&p->release[k])) brunt_constraint_give(p, &p->constraint[k], p->kicks[k].push, p->kicks[k].push);
+    }
+    for (int32_t i = 0; i < j->kicked; i++) brunt_constraints_move(p, p->kicked[i]);
 }
 
 static void note_work(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
-        const brunt_constraint *c = &p->constraint[k];
-        kick *given = &p->kicks[k];
+    const round_job *j = context;
+    const brunt_constraint_set *p = j->set;
+    for (int64_t i = begin; i < end; i++) {
+        const brunt_constraint *c = &p->constraint[p->settled[i]];
+        kick *given = &p->kicks[p->settled[i]];
         if (given->impulse > 0)
             given->work = 0.5 * given->impulse * (along(p, c, true) + along(p, c, false) + given->pressed);
     }
 }
 
 // What is left stays held; what was given too much is owed by what got it, as far as the others of the pair cannot pay.
-static void settle(brunt_constraint_set *p) {
-    sum_left(p);
-    for (int32_t k = 0; k < p->constraint_count; k++) {
+static void settle(const round_job *j) {
+    const brunt_constraint_set *p = j->set;
+    sum_left(j);
+    for (int32_t i = 0; i < j->settled; i++) {
+        const int32_t k = p->settled[i];
         const brunt_impulse_account *a = p->constraint[k].account;
-        brunt_release *r = &p->release[k];
         double *left = &p->kicks[k].left;
-        r->settled = is_settled(r);
-        if (!r->settled) continue;
         if (*left < 0)
             *left *= a->overspent > a->unspent ? 1 - a->unspent / a->overspent : 0;
         else
             *left *= payable(a);
-        if (fabs(*left) < LEAST_LEFT * fabs(r->touch->held)) *left = 0;
+        if (fabs(*left) < LEAST_LEFT * fabs(p->release[k].touch->held)) *left = 0;
     }
-    for (int32_t k = 0; k < p->constraint_count; k++)
-        if (p->release[k].settled) p->release[k].touch->held = 0;
-    for (int32_t k = 0; k < p->constraint_count; k++)
-        if (p->release[k].settled) p->release[k].touch->held += p->kicks[k].left;
+    for (int32_t i = 0; i < j->settled; i++) p->release[p->settled[i]].touch->held = 0;
+    for (int32_t i = 0; i < j->settled; i++) p->release[p->settled[i]].touch->held += p->kicks[p->settled[i]].left;
 }
 
 int brunt_constraints_release(brunt_constraint_set *p, bool *gave, int threads, brunt_timer *timer,
                               brunt_error *error) {
     *gave = false;
     if (!account_touches(p)) return BRUNT_OK;
-    const size_t count = (size_t)p->constraint_count;
-    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
-    if (BRUNT_CAPACITY(p->kicks, count, 0, "contact points", error) ||
-        brunt_constraints_share_all(p, threads, timer, error))
+    round_job j = {.set = p};
+    if (BRUNT_CAPACITY(p->kicks, (size_t)p->constraint_count, 0, "contact points", error) ||
+        BRUNT_CAPACITY(p->settled, (size_t)p->constraint_count, 0, "contact points", error) ||
+        BRUNT_CAPACITY(p->kicked, (size_t)p->dof_node_count, 0, "nodes that contact moves", error))
         return BRUNT_FAILED;
-    brunt_parallel(threads, chunks, 1, write_entries, p, timer);
-    memset(p->kicks, 0, count * sizeof *p->kicks);
+    list_settled(&j);
     *gave = true;
     double held = 0;
     for (int round = 0; round < ROUNDS; round++) {
-        const double left = sum_left(p);
+        const double left = sum_left(&j);
         held = fmax(held, left);
         if (left <= LAST_LEFT * held) break;
-        brunt_parallel(threads, chunks, 1, give, p, timer);
-        brunt_constraints_apply(p, threads, timer);
-        brunt_parallel(threads, chunks, 1, note_work, p, timer);
+        brunt_parallel(threads, j.settled, GRAIN, find_kicks, &j, timer);
+        give_kicks(&j);
+        brunt_parallel(threads, j.settled, GRAIN, note_work, &j, timer);
     }
-    settle(p);
+    settle(&j);
     return BRUNT_OK;
 }

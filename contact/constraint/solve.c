@@ -453,7 +453,7 @@ static quad column_sum(const brunt_constraint_set *p, int64_t s) {
     return sum;
 }
 
-static inline void move_dof_node(const brunt_constraint_set *p, int64_t s) {
+void brunt_constraints_move(const brunt_constraint_set *p, int64_t s) {
     const quad sum = p->shared[s] ? column_sum(p, s) : load_quad(p->sum[s]), zero = {0};
     if (p->still > 0 && sum[0] == 0 && sum[1] == 0 && sum[2] == 0) {
         p->stirred[s] = false;
@@ -470,7 +470,7 @@ static inline void move_dof_node(const brunt_constraint_set *p, int64_t s) {
 static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_constraint_set *p = context;
-    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) move_dof_node(p, s);
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) brunt_constraints_move(p, s);
 }
 
 // Those of parts, each by the thread that has swept over it and has them in its cache; with them as many of the shared.
@@ -479,9 +479,9 @@ static void move_own_nodes(void *context, int64_t begin, int64_t end, int worker
     const brunt_constraint_set *p = context;
     const int64_t shared = p->own_first[p->parts], count = p->own_first[p->parts + 1] - shared;
     for (int64_t part = begin; part < end; part++) {
-        for (int64_t i = p->own_first[part]; i < p->own_first[part + 1]; i++) move_dof_node(p, p->own[i]);
+        for (int64_t i = p->own_first[part]; i < p->own_first[part + 1]; i++) brunt_constraints_move(p, p->own[i]);
         for (int64_t i = count * part / p->parts; i < count * (part + 1) / p->parts; i++)
-            move_dof_node(p, p->own[shared + i]);
+            brunt_constraints_move(p, p->own[shared + i]);
     }
 }
 
