@@ -75,6 +75,7 @@ if wanted contact; then
             study slide h="$([ "$quick" ] && echo 5 || echo 1)" n=$sweeps samples=30 rounds=5 threads=$threads
         done
         study slide h="$([ "$quick" ] && echo 5 || echo 1)" n=16 slave=2 samples=30 rounds=5 threads=$threads
+        study slide h="$([ "$quick" ] && echo 5 || echo 1)" n=16 touch=elastic samples=30 rounds=5 threads=$threads
         for crowd in 2:5 8:5 64:5 512:3 2000:2; do # bodies, rounds
             [ -z "$quick" ] || [ "${crowd%:*}" -le 64 ] || continue
             study crowd bodies="${crowd%:*}" rounds="${crowd#*:}" samples=30 threads=$threads

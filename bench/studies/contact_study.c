@@ -417,7 +417,8 @@ static void run_slide(const settings *s) {
     for (int r = 0; r < s->rounds && !c.status; r++) measure_cost(&c, world, steps, &error);
     if (c.status) stop("slide", &error);
     const double nodes = 2.0 * (n + 1) * (n + 1);
-    snprintf(name, sizeof name, "augury slide %d sweeps%s", s->n > 0 ? s->n : 16, s->slave ? " one way" : "");
+    snprintf(name, sizeof name, "augury slide %d sweeps%s%s", s->n > 0 ? s->n : 16, s->slave ? " one way" : "",
+             s->touch == BRUNT_TOUCH_ELASTIC ? " elastic" : "");
     report_cost(s, name, nodes, nodes, world, &c);
     brunt_world_destroy(world);
     brunt_world_def_free(&def);
