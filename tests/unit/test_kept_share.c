@@ -157,7 +157,7 @@ static double flip_vibrates(double cfl, bool per_step) {
 START_TEST(flip_is_no_matter_of_the_step) {
     static const double cfl[] = {0.1, 0.3, 0.5, 0.8};
     double least[2] = {1, 1}, most[2] = {0, 0};
-    for (int k = SANITIZED; k < 4; k++)
+    for (int k = 0; k < 4; k++)
         for (int per_step = 0; per_step < 2; per_step++) {
             const double kept = flip_vibrates(cfl[k], per_step);
             least[per_step] = fmin(least[per_step], kept), most[per_step] = fmax(most[per_step], kept);
