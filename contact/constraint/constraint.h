@@ -241,9 +241,8 @@ void brunt_constraint_rub(const brunt_constraint_set *set, brunt_constraint *con
 // of the first: of shared nodes `given`, of the others `sum`.
 void brunt_constraint_give(const brunt_constraint_set *set, const brunt_constraint *constraint, const double push[3],
                            const double rub[3]);
-// Gives a degree-of-freedom node its impulse in `given` or `sum`, while a set is solved; and all of them.
+// Gives a degree-of-freedom node its impulse in `given` or `sum`, while a set is solved.
 void brunt_constraints_move(const brunt_constraint_set *set, int64_t node);
-void brunt_constraints_apply(brunt_constraint_set *set, int threads, brunt_timer *timer);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first, or than `negligible`; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED:
 // out of memory.

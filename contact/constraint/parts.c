@@ -139,7 +139,8 @@ static int list_nodes(brunt_constraint_set *p, int threads, brunt_timer *timer, 
     return BRUNT_OK;
 }
 
-int brunt_constraints_share_all(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
+// No parts: every node is shared, and has its column.
+static int share_all(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
     p->parts = 0;
     memset(p->shared, true, (size_t)p->dof_node_count);
     return brunt_constraints_make_columns(p, threads, timer, error);
@@ -150,7 +151,7 @@ int brunt_constraints_make_parts(brunt_constraint_set *p, int threads, brunt_tim
     if (BRUNT_CAPACITY(p->shared, (size_t)p->dof_node_count + 1, 0, "nodes that contact moves", error))
         return BRUNT_FAILED;
     // Accelerated sweeps and friction points look at whole columns.
-    if (p->accelerated || p->friction_point_count) return brunt_constraints_share_all(p, threads, timer, error);
+    if (p->accelerated || p->friction_point_count) return share_all(p, threads, timer, error);
     p->parts = threads < chunks / LEAST_CHUNKS ? threads : chunks / LEAST_CHUNKS;
     if (p->parts < 2) {
         p->parts = 1;

@@ -9,7 +9,5 @@ enum { BRUNT_CONSTRAINT_GRAIN = 128 }; // constraints of a chunk
 // points of several parts press on, and room for what those are given. Which part a point is in changes no sum.
 // BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_constraints_make_parts(brunt_constraint_set *set, int threads, brunt_timer *timer, brunt_error *error);
-// No parts: every node is shared, and has its column. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_constraints_share_all(brunt_constraint_set *set, int threads, brunt_timer *timer, brunt_error *error);
 // Runs a task over the chunks, in the order of the points within a part.
 void brunt_constraints_over_parts(brunt_constraint_set *set, int threads, brunt_task_fn *task, brunt_timer *timer);

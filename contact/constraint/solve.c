@@ -515,7 +515,7 @@ static void finish_chunks(void *context, int64_t begin, int64_t end, int worker)
         brunt_release_note(p, k);
 }
 
-void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *timer) {
+static void move_all(brunt_constraint_set *p, int threads, brunt_timer *timer) {
     if (p->parts > 1)
         brunt_parallel_each(threads, p->parts, move_own_nodes, p, timer);
     else
@@ -561,7 +561,7 @@ static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int thre
         p->still = p->accelerated ? 0 : AT_REST * tolerance * first;
         if (p->accelerated) weight = brunt_acceleration_next(p, chunks, weight);
         if (p->sweeps == sweeps || greatest <= enough) p->momentum = 0;
-        brunt_constraints_apply(p, threads, timer);
+        move_all(p, threads, timer);
     }
     p->still = 0;
     *converges = greatest <= DIVERGES * start;
