@@ -7,9 +7,9 @@
 
 // What the stress at the end of the step does over the block's particles [W]. The rate it works on is that of the
 // motion as it stands at the end, Fdot F^-1 = L (I + dt L)^-1 = L - dt L L + O(dt^2).
-static double plane_power(brunt_body *body, const brunt_block *block, real dt, real *const *gradient) {
+BRUNT_INLINE double plane_power_of(int dim, brunt_body *body, const brunt_block *block, real dt,
+                                   real *const *gradient) {
     brunt_particles *p = &body->particles; // of rings the part in the plane: its components have the same places
-    const int dim = p->dim;
     real *const *tau = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
     const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     lanes sum = (lanes){0};
@@ -26,6 +26,11 @@ static double plane_power(brunt_body *body, const brunt_block *block, real dt, r
         sum += lanes_load(volume + s) * power;
     }
     return (double)lanes_sum(sum);
+}
+
+static double plane_power(brunt_body *body, const brunt_block *block, real dt, real *const *gradient) {
+    return body->particles.dim == 3 ? plane_power_of(3, body, block, dt, gradient)
+                                    : plane_power_of(2, body, block, dt, gradient);
 }
 
 // What the hoop stress of rings does, likewise [W].
