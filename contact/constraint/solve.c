@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
+#include "base/quad.h"
 #include "contact/constraint/acceleration.h"
 #include "contact/constraint/accounts.h"
 #include "contact/constraint/block.h"
@@ -17,19 +18,13 @@ enum { GRAIN = BRUNT_CONSTRAINT_GRAIN, AHEAD = 40 }; // AHEAD: entries that are 
 _Static_assert(GRAIN % BRUNT_DOUBLES == 0, "a chunk is whole blocks");
 static const double DIVERGES = 10;  // times the correction of the first sweep is left
 static const double AT_REST = 0.02; // of the correction that ends the sweeps: what corrects less may rest
+static const double PARALLEL = sizeof(real) == sizeof(double) ? 1e-9 : 1e-5; // unit vectors that differ by rounding
 
-// Three components, and one number that does not count: whatever follows them in memory.
-typedef double quad __attribute__((vector_size(32)));
-static inline quad load_quad(const double *from) {
-    quad v;
-    memcpy(&v, from, sizeof v);
-    return v;
-}
+// Quads of three components and one number that does not count: whatever follows them in memory.
 
 // Of a degree-of-freedom node, before the forces or as it is now.
 static inline const double *velocity_of(const brunt_constraint_set *p, int32_t node, bool old) {
-    if (old) return p->dof_node[node].old;
-    return p->now ? p->now[node] : p->dof_node[node].v;
+    return old ? p->dof_node[node].old : p->now ? p->now[node] : p->dof_node[node].v;
 }
 
 // Of what does not turn, with the weights of `entry` and the `count` - 1 after it.
@@ -37,7 +32,7 @@ static inline quad plain_velocity(const brunt_constraint_set *p, const brunt_con
                                   bool old) {
     quad u = {0};
     for (const brunt_constraint_entry *end = entry + count; entry < end; entry++) {
-        u += load_quad(entry->weight) * load_quad(velocity_of(p, entry->dof_node, old));
+        u += quad_load(entry->weight) * quad_load(velocity_of(p, entry->dof_node, old));
     }
     return u;
 }
@@ -87,10 +82,10 @@ static void give_plain(const brunt_constraint_set *p, const brunt_constraint *co
     const quad pushed = {push[0], push[1], push[2]}, rubbed = {rub[0], rub[1], rub[2]};
     for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
         const int32_t s = p->entry[e].dof_node;
-        const quad out = load_quad(p->entry[e].weight) * pushed, sum = p->shared[s] ? out : load_quad(p->sum[s]) + out;
+        const quad out = quad_load(p->entry[e].weight) * pushed, sum = p->shared[s] ? out : quad_load(p->sum[s]) + out;
         memcpy(p->shared[s] ? p->given[e] : p->sum[s], &sum, sizeof sum);
         if (!constraint->friction_point) continue;
-        const quad apart = load_quad(p->entry[e + constraint->count].weight) * rubbed;
+        const quad apart = quad_load(p->entry[e + constraint->count].weight) * rubbed;
         memcpy(p->given[e + constraint->count], &apart, sizeof apart);
     }
 }
@@ -202,9 +197,9 @@ static void share_constraints(void *context, int64_t begin, int64_t end, int wor
 
 // Whether diagonal matrix D leaves unit vector n in its direction.
 static bool keeps_direction(const double D[3], const double n[3]) {
-    const int one = n[0] != 0 ? 0 : n[1] != 0 ? 1 : 2;
+    const int one = fabs(n[0]) > PARALLEL ? 0 : fabs(n[1]) > PARALLEL ? 1 : 2;
     for (int a = one + 1; a < 3; a++)
-        if (n[a] != 0 && D[a] != D[one]) return false;
+        if (fabs(n[a]) > PARALLEL && D[a] != D[one]) return false;
     return true;
 }
 
@@ -213,8 +208,9 @@ static bool keeps_direction(const double D[3], const double n[3]) {
 static bool is_crossed(const brunt_constraint_set *p, const double normal[3],
                        const struct brunt_constraint_column *column) {
     const double *n = p->constraint[column->constraint].n, *gradient = p->entry[column->entry].height_gradient;
-    return n[0] != normal[0] || n[1] != normal[1] || n[2] != normal[2] || gradient[0] != 0 || gradient[1] != 0 ||
-           gradient[2] != 0 || !keeps_direction(p->entry[column->entry].weight, normal);
+    for (int a = 0; a < 3; a++)
+        if (fabs(n[a] - normal[a]) > PARALLEL || gradient[a] != 0) return true;
+    return !keeps_direction(p->entry[column->entry].weight, normal);
 }
 
 // Whether that is so of any of a node's constraints. Without friction points what pushes and what rubs are the same
@@ -448,19 +444,19 @@ static quad column_sum(const brunt_constraint_set *p, int64_t s) {
     quad sum = {0};
     for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
         if (q + AHEAD < all) __builtin_prefetch(p->given[p->column[q + AHEAD].entry]);
-        sum += load_quad(p->given[p->column[q].entry]);
+        sum += quad_load(p->given[p->column[q].entry]);
     }
     return sum;
 }
 
 void brunt_constraints_move(const brunt_constraint_set *p, int64_t s) {
-    const quad sum = p->shared[s] ? column_sum(p, s) : load_quad(p->sum[s]), zero = {0};
+    const quad sum = p->shared[s] ? column_sum(p, s) : quad_load(p->sum[s]), zero = {0};
     if (p->still > 0 && sum[0] == 0 && sum[1] == 0 && sum[2] == 0) {
         p->stirred[s] = false;
         return;
     }
-    const quad was = load_quad(p->now[s]), now = was + sum * load_quad(p->inverse[s]), by = now - was,
-               received = load_quad(p->received[s]) + sum;
+    const quad was = quad_load(p->now[s]), now = was + sum * quad_load(p->inverse[s]), by = now - was,
+               received = quad_load(p->received[s]) + sum;
     if (p->still > 0) brunt_node_stirs(p, s, sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]));
     memcpy(p->sum[s], &zero, sizeof zero);
     memcpy(p->now[s], &now, sizeof now), memcpy(p->received[s], &received, sizeof received);
