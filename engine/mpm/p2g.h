@@ -27,16 +27,19 @@
 typedef struct p2g_arrays {
     const real *x[3], *v[3], *C[9], *tau[6], *F[9], *mass, *volume;
     const uint8_t *bin;
+    real corner[3]; // [m] of the block
     const real *all[32];
     int count; // for the prefetches
 } p2g_arrays;
 
-// A vector of particles, staged: each one's terms and weights along each axis, and its first node in the block's
-// buffer.
+// Particles, staged a vector at a time: each one's terms and weights along each axis, and its first node in the block's
+// buffer. As many as two bins have, so that most of those of a bin are in one tile.
+enum { TILE = 16 };
+_Static_assert(TILE % BRUNT_LANES == 0, "a tile is whole vectors");
 typedef struct p2g_tile {
-    real term[3][4][BRUNT_LANES][8];
-    real weight[3][4][BRUNT_LANES];
-    int32_t node[BRUNT_LANES];
+    real term[3][4][TILE][8];
+    real weight[3][4][TILE], row[4][4][TILE]; // `row`: products of those along the first two axes
+    int32_t node[TILE];
     lanes momentum[3][3]; // along each axis: what does not grow with an offset goes along the first, others have 0
 } __attribute__((aligned(64))) p2g_tile;
 
@@ -79,18 +82,18 @@ BRUNT_INLINE void total_stress(const p2g_arrays *f, int64_t s, int a, const lane
     }
 }
 
-// Stages the particles at s; `corner` is the block's, h the cell.
-BRUNT_INLINE void stage_tile(p2g_tile *tile, const p2g_arrays *f, int64_t s, const real corner[3],
-                             const brunt_grid *grid, real dt, transfer_kind kind) {
+// Stages the particles at s, from place `to` of the tile on.
+BRUNT_INLINE void stage_tile(p2g_tile *tile, int to, const p2g_arrays *f, int64_t s, const brunt_grid *grid, real dt,
+                             transfer_kind kind) {
     const int dim = kind.dim, n = kind.order + 1;
     const real h = grid->h, inv_h = grid->inv_h;
     lanes m = lanes_load(f->mass + s), impulse = -dt * lanes_load(f->volume + s);
     lanes T[3], hoop = (lanes){0};
     for (int r = 0; r < dim; r++) tile->momentum[0][r] = m * lanes_load(f->v[r] + s);
     if (kind.form == AXISYMMETRIC) hoop = impulse * lanes_load(f->tau[2] + s) / lanes_load(f->x[0] + s);
-    for (int l = 0; l < BRUNT_LANES; l++) tile->node[l] = node_of_bin(f->bin[s + l], kind);
+    for (int l = 0; l < BRUNT_LANES; l++) tile->node[to + l] = node_of_bin(f->bin[s + l], kind);
     for (int a = 0; a < dim; a++) {
-        lanes u = local_coordinate(lanes_load(f->x[a] + s), corner[a], inv_h, bin_coordinate(f->bin + s, dim, a));
+        lanes u = local_coordinate(lanes_load(f->x[a] + s), f->corner[a], inv_h, bin_coordinate(f->bin + s, dim, a));
         lanes w[4], g[4], mC[3];
         for (int r = 0; r < dim; r++) T[r] = impulse * lanes_load(f->tau[SYMMETRIC_INDEX(dim, r, a)] + s);
         if (kind.form == TOTAL) total_stress(f, s, a, &impulse, T, dim);
@@ -107,74 +110,49 @@ BRUNT_INLINE void stage_tile(p2g_tile *tile, const p2g_arrays *f, int64_t s, con
                 column[BRUNT_NODE_OLD + r] = g[i] * T[r];
             }
             if (kind.form == AXISYMMETRIC && a == 0) column[BRUNT_NODE_OLD] += w[i] * hoop;
-            node8_transpose(column, tile->term[a][i]);
-            lanes_store(tile->weight[a][i], w[i]);
+            node8_transpose(column, tile->term[a][i] + to);
+            lanes_store(tile->weight[a][i] + to, w[i]);
         }
     }
-}
-
-// Rows of 64 cubic nodes do not fit the registers; those go straight to the buffer.
-BRUNT_INLINE bool sums_in_registers(transfer_kind kind) { return kind.dim == 2 || kind.order < 3; }
-
-// Nodes that a bin touches.
-BRUNT_INLINE int nodes_of_bin(transfer_kind kind) {
-    const int n = kind.order + 1;
-    return kind.dim == 3 ? n * n * n : n * n;
-}
-
-// The sums of a bin's particles to its nodes, the first of which is `at`; the sums begin anew.
-BRUNT_INLINE void flush_sums(real *at, node_part (*sum)[NODE_PARTS], transfer_kind kind) {
-    const int n = kind.order + 1, span = (kind.dim == 3 ? 4 : 8) + kind.order;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; dim == 3 && i < n; i++)
         for (int j = 0; j < n; j++)
-            for (int k = 0; k < (kind.dim == 3 ? n : 1); k++) {
-                real *node = at + (kind.dim == 3 ? (i * span + j) * span + k : i * span + j) * 8;
-                node_part *of = sum[kind.dim == 3 ? (i * n + j) * n + k : i * n + j];
-                for (int h = 0; h < NODE_PARTS; h++) {
-                    node_part_store(node, h, node_part_load(node, h) + of[h]);
-                    of[h] = (node_part){0};
-                }
-            }
+            lanes_store(tile->row[i][j] + to,
+                        lanes_load(tile->weight[0][i] + to) * lanes_load(tile->weight[1][j] + to));
 }
 
-// Row (i, j) of particle `p` to its nodes along z: to their sums or, where they do not fit the registers, from `at` on.
-BRUNT_INLINE void add_along_z(const p2g_tile *tile, int p, const node_part *U, real wxy, node_part (*sum)[NODE_PARTS],
-                              real *at, transfer_kind kind) {
-    for (int k = 0; k <= kind.order; k++)
-        for (int h = 0; h < NODE_PARTS; h++) {
-            const node_part Z = node_part_load(tile->term[2][k][p], h);
-            if (sums_in_registers(kind)) {
-                sum[k][h] += tile->weight[2][k][p] * U[h];
-                sum[k][h] += wxy * Z;
-            } else {
-                const node_part more = tile->weight[2][k][p] * U[h] + wxy * Z;
-                node_part_store(at + k * 8, h, node_part_load(at + k * 8, h) + more);
-            }
-        }
-}
+// Rows of nodes along the last axis, of one place along x (2D: of several), whose sums the registers hold at once, a
+// part of the nodes at a time.
+BRUNT_INLINE int rows_at_once(transfer_kind kind) { return NODE_PARTS == 1 || kind.order < 3 ? kind.order + 1 : 2; }
 
-// Particle `p` of the tile to the sums, or to the nodes from `at` on.
-BRUNT_INLINE void add_particle(const p2g_tile *tile, int p, node_part (*sum)[NODE_PARTS], real *at,
-                               transfer_kind kind) {
-    const int n = kind.order + 1, span = (kind.dim == 3 ? 4 : 8) + kind.order;
-    node_part Y[4][NODE_PARTS];
-    for (int j = 0; j < n; j++)
-        for (int h = 0; h < NODE_PARTS; h++) Y[j][h] = node_part_load(tile->term[1][j][p], h);
-    for (int i = 0; i < n; i++) {
-        const real wx = tile->weight[0][i][p];
-        node_part X[NODE_PARTS];
-        for (int h = 0; h < NODE_PARTS; h++) X[h] = node_part_load(tile->term[0][i][p], h);
-        for (int j = 0; j < n; j++) {
-            const real wy = tile->weight[1][j][p];
-            node_part U[NODE_PARTS];
-            for (int h = 0; h < NODE_PARTS; h++) U[h] = wy * X[h] + wx * Y[j][h];
-            if (kind.dim == 3)
-                add_along_z(tile, p, U, wx * wy, sums_in_registers(kind) ? sum + (i * n + j) * n : sum,
-                            at + (i * span + j) * span * 8, kind);
-            else
-                for (int h = 0; h < NODE_PARTS; h++) sum[i * n + j][h] += U[h];
+// Part h of rows (i, j) to (i, j + rows) of particle `p` to their sums; 2D: of rows j to j + rows.
+BRUNT_INLINE void add_rows(const p2g_tile *tile, int p, int i, int j, int h, node_part (*sum)[4], transfer_kind kind) {
+    const int last = kind.dim - 1;
+    for (int r = 0; r < rows_at_once(kind); r++) {
+        node_part U = node_part_load(tile->term[0][kind.dim == 3 ? i : j + r][p], h);
+        if (kind.dim == 3)
+            U = tile->weight[1][j + r][p] * U + tile->weight[0][i][p] * node_part_load(tile->term[1][j + r][p], h);
+        const real across = kind.dim == 3 ? tile->row[i][j + r][p] : tile->weight[0][j + r][p];
+        for (int k = 0; k <= kind.order; k++) {
+            sum[r][k] += tile->weight[last][k][p] * U;
+            sum[r][k] += across * node_part_load(tile->term[last][k][p], h);
         }
     }
+}
+
+// Particles [from, to) of the tile, all of one bin, to its nodes, the first of which is `at`.
+BRUNT_INLINE void add_run(const p2g_tile *tile, int from, int to, real *at, transfer_kind kind) {
+    const int n = kind.order + 1, row = ((kind.dim == 3 ? 4 : 8) + kind.order) * 8, rows = rows_at_once(kind);
+    for (int h = 0; h < NODE_PARTS; h++)
+        for (int i = 0; i < (kind.dim == 3 ? n : 1); i++)
+            for (int j = 0; j < n; j += rows) {
+                real *first = at + i * (4 + kind.order) * row + j * row;
+                node_part sum[4][4];
+                for (int r = 0; r < rows; r++)
+                    for (int k = 0; k < n; k++) sum[r][k] = node_part_load(first + r * row + k * 8, h);
+                for (int p = from; p < to; p++) add_rows(tile, p, i, j, h, sum, kind);
+                for (int r = 0; r < rows; r++)
+                    for (int k = 0; k < n; k++) node_part_store(first + r * row + k * 8, h, sum[r][k]);
+            }
 }
 
 BRUNT_INLINE void p2g(brunt_body *body, int32_t b, real dt, transfer_kind kind) {
@@ -182,29 +160,23 @@ BRUNT_INLINE void p2g(brunt_body *body, int32_t b, real dt, transfer_kind kind) 
     const brunt_block *block = &grid->blocks[b];
     p2g_arrays f;
     p2g_arrays_of(body, &f);
-    real corner[3] = {0};
     for (int a = 0; a < kind.dim; a++)
-        corner[a] = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * (kind.dim == 3 ? 4 : 8)));
+        f.corner[a] = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * (kind.dim == 3 ? 4 : 8)));
     real *buffer = grid->p2g_buffer + (size_t)b * (size_t)grid->span_nodes * 8;
     memset(buffer, 0, (size_t)grid->span_nodes * 8 * sizeof(real));
 
     p2g_tile tile;
     memset(tile.momentum, 0, sizeof tile.momentum);
-    node_part sum[27][NODE_PARTS]; // of the bin's nodes, where they fit the registers
-    for (int q = 0; sums_in_registers(kind) && q < nodes_of_bin(kind); q++)
-        for (int h = 0; h < NODE_PARTS; h++) sum[q][h] = (node_part){0};
-    int current = -1;
-    for (int64_t s = block->first; s < block->first + block->count; s += BRUNT_LANES) {
-        stage_tile(&tile, &f, s, corner, grid, dt, kind);
-        prefetch_particles(&f, s);
-#pragma GCC unroll 1 // eight times the code is no quicker
-        for (int p = 0; p < BRUNT_LANES; p++) {
-            if (sums_in_registers(kind) && tile.node[p] != current) {
-                if (current >= 0) flush_sums(buffer + (size_t)current * 8, sum, kind);
-                current = tile.node[p];
-            }
-            add_particle(&tile, p, sum, buffer + (size_t)tile.node[p] * 8, kind);
+    const int64_t end = block->first + block->count;
+    for (int64_t s = block->first; s < end; s += TILE) {
+        int staged = 0;
+        for (; staged < TILE && s + staged < end; staged += BRUNT_LANES) {
+            stage_tile(&tile, staged, &f, s + staged, grid, dt, kind);
+            prefetch_particles(&f, s + staged);
+        }
+        for (int from = 0, to; from < staged; from = to) {
+            for (to = from + 1; to < staged && tile.node[to] == tile.node[from];) to++;
+            add_run(&tile, from, to, buffer + (size_t)tile.node[from] * 8, kind);
         }
     }
-    if (sums_in_registers(kind) && current >= 0) flush_sums(buffer + (size_t)current * 8, sum, kind);
 }
