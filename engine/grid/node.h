@@ -66,6 +66,18 @@ BRUNT_INLINE void node8_transpose(const lanes component[8], real out[BRUNT_LANES
     lanes_store(out[7], HALF_HIGH(b3, b7));
 #undef HALF_LOW
 #undef HALF_HIGH
+#elif BRUNT_LANES == 4
+    for (int k = 0; k < 8; k += 4) {
+        const lanes *c = component + k;
+        const lanes low01 = __builtin_shufflevector(c[0], c[1], 0, 4, 2, 6),
+                    low23 = __builtin_shufflevector(c[2], c[3], 0, 4, 2, 6),
+                    high01 = __builtin_shufflevector(c[0], c[1], 1, 5, 3, 7),
+                    high23 = __builtin_shufflevector(c[2], c[3], 1, 5, 3, 7);
+        lanes_store(out[0] + k, __builtin_shufflevector(low01, low23, 0, 1, 4, 5));
+        lanes_store(out[1] + k, __builtin_shufflevector(high01, high23, 0, 1, 4, 5));
+        lanes_store(out[2] + k, __builtin_shufflevector(low01, low23, 2, 3, 6, 7));
+        lanes_store(out[3] + k, __builtin_shufflevector(high01, high23, 2, 3, 6, 7));
+    }
 #else
     for (int l = 0; l < BRUNT_LANES; l++)
         for (int k = 0; k < 8; k++) out[l][k] = component[k][l];
