@@ -326,8 +326,16 @@ static void print_longer(double times, double seconds, const char *without) {
         printf("%.3g times as long without %s (steps %.3g s)", times, without, seconds / times);
 }
 
+// What longer steps would take, which material points stand that do not come away from each other.
+static void print_together(const brunt_world_def *def, double seconds) {
+    const double most = brunt_together_cfl(def->dimension, def->kernel, def->transfer);
+    if (def->step > 0 || !(def->cfl < most * (1 - 1e-9))) return;
+    printf("; points that hold together are stable up to time.cfl %.2g: %.3g times as long (steps %.3g s)", most,
+           most / def->cfl, seconds * def->cfl / most);
+}
+
 // Whose step it is, and what its elements and the other bodies would have.
-static void print_limit(const brunt_world *world, brunt_step_limit limit, double seconds) {
+static void print_limit(const brunt_scene *scene, const brunt_world *world, brunt_step_limit limit, double seconds) {
     char few[64];
     if (limit.body < 0) return;
     printf("  the step is that of body %s", brunt_body_name(world, limit.body));
@@ -335,7 +343,7 @@ static void print_limit(const brunt_world *world, brunt_step_limit limit, double
         printf(", element id %lld (stable up to %.4g s%s)", (long long)limit.element, limit.step,
                limit.step < 0.999 * limit.element_step ? " with the loads on its surface" : "");
     else
-        printf(" (stable up to %.4g s)", limit.step);
+        printf(" (stable up to %.4g s)", limit.step), print_together(&scene->world, seconds);
     if (limit.element >= 0 && isfinite(limit.without_few)) {
         snprintf(few, sizeof few, "its shortest %s", limit.few == 1 ? "element" : "elements");
         if (limit.few > 1) snprintf(few, sizeof few, "its %lld shortest elements", (long long)limit.few);
@@ -368,7 +376,7 @@ static int print_cost(const brunt_machine *machine, const brunt_scene *scene, br
            brunt_world_elements(world) == 0    ? "particle"
            : brunt_world_particles(world) == 0 ? "element"
                                                : "particle- or element");
-    print_limit(world, limit, p.step_seconds);
+    print_limit(scene, world, limit, p.step_seconds);
     print_stored(machine, scene, world);
     print_rehearsal(&p);
     printf("  steps %.3g s (", p.step_seconds);

@@ -21,6 +21,18 @@ double brunt_lone_points_cfl(int dimension, brunt_kernel kernel, brunt_transfer 
     return limit[dimension == 3][kernel - BRUNT_LINEAR][transfer];
 }
 
+// Measured, too (tests/stability/test_point_steps.c): blocks of four cells, of one to three points a cell along each
+// axis and Poisson's ratios up to 0.499, at seven places in a cell, rounded down. Points that hold together move each
+// other's nodes, which are heavier than a point alone has them.
+double brunt_together_cfl(int dimension, brunt_kernel kernel, brunt_transfer transfer) {
+    static const double limit[2][3][3] = {
+        // PIC, FLIP, APIC
+        {{0, 0, 0}, {0.5, 0.5, 0.6}, {0.7, 0.7, 0.9}}, // 2D: linear, quadratic, cubic
+        {{0, 0, 0}, {0.5, 0.5, 0.6}, {0.6, 0.6, 0.8}}, // 3D
+    };
+    return limit[dimension == 3][kernel - BRUNT_LINEAR][transfer];
+}
+
 double brunt_share_left(double share, double speed, double cell, double dt) {
     return pow(share, 2 * speed * dt / cell);
 }

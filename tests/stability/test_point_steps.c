@@ -90,6 +90,55 @@ START_TEST(lone_particles_that_hardly_shear) {
 }
 END_TEST
 
+// A block of four cells, of so many points a cell along each axis, that swings a little in many ways: as above.
+static double swinging_growth(const lone *c, int points, double cfl) {
+    enum { PLACES = 3, STEPS = 300 };
+    const double h = 0.1;
+    double worst = 0;
+    for (int o = 0; o < PLACES && worst < 100; o++) {
+        brunt_world_def def = def_begin(c->dimension, h);
+        def.kernel = c->kernel, def.transfer = c->transfer, def.flip = 1, def.cfl = cfl;
+        def_material(&def, "neo-hookean", 1000, 1e5, c->nu);
+        double low[3], high[3];
+        for (int a = 0; a < 3; a++) low[a] = h * (0.12 + (2 * a + 1) * o / (double)PLACES), high[a] = low[a] + 4 * h;
+        brunt_body_def *b = def_box(&def, "a", low, high);
+        b->spacing = h / points;
+        for (int a = 0; a < c->dimension; a++) b->wave_velocity[a] = 1e-5, b->wave_vector[a] = 17 + 6 * a;
+        brunt_world *world = world_take(&def);
+        brunt_error error = {0};
+        int status = BRUNT_OK;
+        for (int s = 0; s < STEPS && !status && worst < 100; s++) {
+            status = brunt_world_step(world, INFINITY, &error);
+            const brunt_energy e = world_energy(world);
+            worst = fmax(worst, status ? INFINITY : (e.kinetic + e.internal) / e.initial);
+        }
+        brunt_world_destroy(world);
+    }
+    return worst;
+}
+
+// What holds together is stable with longer steps than points alone; a quarter above what is said most is not.
+START_TEST(points_that_hold_together_take_longer_steps) {
+    for (int dimension = 2; dimension < 4; dimension++) {
+        int above = 0;
+        for (int i = 0; i < 6; i++) {
+            lone c = {dimension, false, kernels[1 + i % 2], transfers[i / 2], 0.499};
+            const double limit = brunt_together_cfl(dimension, c.kernel, c.transfer);
+            ck_assert_double_ge(limit, brunt_default_cfl(dimension, c.kernel, c.transfer));
+            const double soft = swinging_growth(&c, 1, limit), more = swinging_growth(&c, 1, fmin(1, limit + 0.25));
+            c.nu = 0.3;
+            const double solid = swinging_growth(&c, 2, limit);
+            printf("  a block, %dD kernel %d transfer %d: energy grows %.2f and %.2f fold at cfl %.1f, %.1e at %.2f\n",
+                   dimension, (int)c.kernel, (int)c.transfer, soft, solid, limit, more, fmin(1, limit + 0.25));
+            ck_assert_double_le(fmax(soft, solid), 2);
+            above += !(more < 100);
+        }
+        ck_assert_int_ge(above, 3);
+    }
+    ck_assert(brunt_together_cfl(2, BRUNT_LINEAR, BRUNT_FLIP) == 0);
+}
+END_TEST
+
 // A block between mirror planes, pressed by one of them, of a solid whose equation of state ends at J = 1/3: it hardens
 // without bound before, so that the end of the time is never reached.
 static brunt_world_def def_press(brunt_method method, double speed) {
@@ -193,6 +242,7 @@ int main(void) {
     Suite *suite = suite_create("point_steps");
     ADD(lone_particles_are_stable_at_the_default_step);
     ADD(lone_particles_that_hardly_shear);
+    ADD(points_that_hold_together_take_longer_steps);
     ADD(steps_that_shorten_without_end_are_reported);
     ADD(steps_cut_short_do_not_count);
     ADD(steps_too_long_for_lone_points_are_told);

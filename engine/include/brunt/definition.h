@@ -199,6 +199,8 @@ brunt_world_def brunt_world_def_default(void);
 // The share of the stable step that is taken when none is given: 0.5, or less where material points alone in their
 // cells would gain energy: 0.4 in three dimensions with the quadratic kernel and PIC or FLIP.
 double brunt_default_cfl(int dimension, brunt_kernel kernel, brunt_transfer transfer);
+// The share up to which points that hold together, one a cell or more, gain no energy; 0: not known (linear kernel).
+double brunt_together_cfl(int dimension, brunt_kernel kernel, brunt_transfer transfer);
 
 // Zeroed memory for the arrays and shapes a definition owns, so that brunt_world_def_free can free them. NULL: out of
 // memory.
