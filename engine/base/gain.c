@@ -4,8 +4,9 @@
 
 #include "base/error.h"
 
-enum { WINDOW_PHASES = 32, FIRST_SHARED = 4 };
+enum { WINDOW_PHASES = 32, VAIN_PHASES = 3, FIRST_SHARED = 4 };
 static const double WINDOW = 5e-3, WHOLE_WINDOW = 50e-3; // [s] of so many phases at least; of how many ever
+static const double VAIN = 2e-3, VAIN_SHARE = 4;         // [s] of first phases that took so many times their work
 static const double MEMORY = 0.1;                        // [s] that the way in use is known by
 // Of the work in phases, that they take: threads that get below it are not left for a trial. One thread takes 1, or
 // somewhat less where threads that share a memory make work of waiting for it.
@@ -41,6 +42,13 @@ static double rate(const brunt_gain_way *way) { return way->taken / way->expecte
 
 static bool fills_window(const brunt_gain_size *s) {
     return s->taken >= WHOLE_WINDOW || (s->phases >= WINDOW_PHASES && s->taken >= WINDOW);
+}
+
+// Of the first phases that are shared, before anything is known of them: on a machine with other work each waits for
+// whichever thread was left out, many times what it is worth, and a window of those would be most of a short run.
+static bool is_in_vain(const brunt_gain_size *s) {
+    return s->together && !(s->ways[true].expected > 0) && s->phases >= VAIN_PHASES && s->taken >= VAIN &&
+           s->taken > VAIN_SHARE * s->expected;
 }
 
 static void open_window(brunt_gain_size *s) { s->phases = 0, s->expected = 0, s->taken = 0; }
@@ -102,7 +110,7 @@ void brunt_gain_learn(brunt_gain *gain, const brunt_gain_choice *choice, brunt_t
     brunt_gain_size *s = &gain->sizes[choice->size];
     if (!s->known) s->together = choice->together, s->known = true;
     s->phases++, s->expected += choice->expected, s->taken += taken;
-    if (!fills_window(s)) return;
+    if (!fills_window(s) && !is_in_vain(s)) return;
     add_window(s);
     decide(s, now, s->together && rate(&s->ways[true]) < SURE);
 }

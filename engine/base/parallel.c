@@ -23,7 +23,7 @@ static void account_times(brunt_timer *timer, const span *spans, int workers) {
 }
 
 typedef struct phase {
-    int64_t count, grain;
+    int64_t first, count, grain; // tasks first .. first + count - 1
     brunt_task_fn *task;
     void *context;
 } phase;
@@ -63,7 +63,7 @@ static int threads_left(int threads) {
 
 static void run_alone(const phase *p, span *spans) {
     spans[0].begin = brunt_clock();
-    p->task(p->context, 0, p->count, 0);
+    p->task(p->context, p->first, p->first + p->count, 0);
     spans[0].end = brunt_clock();
 }
 
@@ -77,7 +77,7 @@ typedef struct share {
 static void take_pieces(const phase *p, share *s, int worker) {
     for (int64_t piece; (piece = atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed)) < s->end;) {
         const int64_t begin = piece * p->grain, end = begin + p->grain < p->count ? begin + p->grain : p->count;
-        p->task(p->context, begin, end, worker);
+        p->task(p->context, p->first + begin, p->first + end, worker);
     }
 }
 
@@ -101,19 +101,34 @@ static int run_together(int threads, const phase *p, bool timed, span *spans) {
     return workers;
 }
 
-// On one thread or on all, as has been the quicker way.
-static int run_adapted(int threads, const phase *p, span *spans) {
+// Of a phase that has not been met its first piece, on this thread: what the rest will take is known by it.
+static void run_first_piece(phase *p) {
     const brunt_gain_choice choice = brunt_gain_choose(&gains, p->task, p->count);
+    if (choice.expected > 0 || p->count <= p->grain) return;
+    const double begin = brunt_clock();
+    p->task(p->context, p->first, p->first + p->grain, 0);
+    const double end = brunt_clock();
+    brunt_gain_learn(&gains, &choice, p->task, p->grain, end - begin, end - begin, end);
+    p->first += p->grain, p->count -= p->grain;
+}
+
+// On one thread or on all, as has been the quicker way.
+static int run_adapted(int threads, const phase *all, span *spans) {
+    phase p = *all;
     int workers = 1;
+    const double begun = brunt_clock();
+    run_first_piece(&p);
+    const brunt_gain_choice choice = brunt_gain_choose(&gains, p.task, p.count);
     const double begin = brunt_clock();
     if (choice.together)
-        workers = run_together(threads, p, true, spans);
+        workers = run_together(threads, &p, true, spans);
     else
-        run_alone(p, spans);
+        run_alone(&p, spans);
     const double end = brunt_clock();
     double work = 0;
     for (int w = 0; w < workers; w++) work += spans[w].end - spans[w].begin;
-    brunt_gain_learn(&gains, &choice, p->task, p->count, work, end - begin, end);
+    brunt_gain_learn(&gains, &choice, p.task, p.count, work, end - begin, end);
+    if (p.first > all->first) spans[0].begin = begun;
     return workers;
 }
 
@@ -125,7 +140,7 @@ static void run(int threads, const phase *p, brunt_timer *timer) {
     else if (timer)
         run_alone(p, spans);
     else
-        p->task(p->context, 0, p->count, 0);
+        p->task(p->context, p->first, p->first + p->count, 0);
     if (timer) account_times(timer, spans, workers);
 }
 
@@ -133,7 +148,7 @@ void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *ta
     if (count <= 0) return;
     threads = threads_left(threads);
     const int64_t pieces = (count + grain - 1) / grain;
-    const phase p = {count, grain, task, context};
+    const phase p = {0, count, grain, task, context};
     // A thread that gets less than a few pieces costs more to wake and wait for than it saves.
     run(threads > pieces / LEAST_PIECES ? (int)(pieces / LEAST_PIECES) : threads, &p, timer);
 }
@@ -141,6 +156,6 @@ void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *ta
 void brunt_parallel_each(int threads, int64_t count, brunt_task_fn *task, void *context, brunt_timer *timer) {
     if (count <= 0) return;
     threads = threads_left(threads);
-    const phase p = {count, 1, task, context};
+    const phase p = {0, count, 1, task, context};
     run(threads > count ? (int)count : threads, &p, timer);
 }

@@ -121,6 +121,31 @@ START_TEST(pauses_of_the_machine_are_borne) {
 }
 END_TEST
 
+// On a machine that is busy from the start a short run is not over before that is known: of the first phases that are
+// shared a few, and no more. What costs more together by a little is looked at for a whole window.
+START_TEST(first_phases_in_vain_are_few) {
+    static const double some[] = {70e-6, 300e-6};
+    for (int k = 0; k < 2; k++)
+        for (int m = 0; m < 2; m++) {
+            brunt_gain gain = {0};
+            stay at = {0};
+            stay_on(&gain, m ? &loses : &busy, some[k], 1e-9, &at);
+            const int64_t first = at.together;
+            int64_t together = first;
+            while (at.together == together && together < 1000) {
+                const int64_t before = at.together;
+                stay_on(&gain, m ? &loses : &busy, some[k], 1e-9, &at);
+                if (at.together == before) break;
+                together = at.together;
+            }
+            printf("  %.0e s on a machine %s: %lld phases are shared before one is not\n", some[k],
+                   m ? "that loses" : "in use", (long long)together);
+            ck_assert_int_ge(together, m ? 16 : 2);
+            ck_assert_int_le(together, m ? 200 : 4);
+        }
+}
+END_TEST
+
 // One phase in thirty waits ten milliseconds for a thread that was left out: the mean counts, not most.
 START_TEST(rare_waits_count) {
     brunt_gain gain = {0};
@@ -355,6 +380,38 @@ START_TEST(each_unit_is_run_once) {
 }
 END_TEST
 
+// What has not been met is met by its first piece, while no other thread is at it; a long one is then shared.
+typedef struct opening {
+    shares shares;
+    double first_ended, others_began; // [s] of the first piece; of worker 1, INFINITY: it had nothing to do
+} opening;
+
+static void open_slowly(void *context, int64_t begin, int64_t end, int worker) {
+    opening *o = context;
+    const double began = brunt_clock();
+    note(&o->shares, begin, end, worker);
+    if (worker == 1) o->others_began = fmin(o->others_began, began);
+    while (brunt_clock() < began + 1e-3 * (double)(end - begin)) {}
+    if (begin == 0) o->first_ended = brunt_clock();
+}
+
+START_TEST(what_is_new_begins_alone) {
+    enum { UNITS = 50, GRAIN = 4 };
+    opening o = {.others_began = INFINITY};
+    memset(o.shares.owner, -1, sizeof o.shares.owner), memset(o.shares.first, -1, sizeof o.shares.first);
+    brunt_timer timer = {0};
+    brunt_parallel_adapt(true);
+    brunt_parallel(2, UNITS, GRAIN, open_slowly, &o, &timer);
+    brunt_parallel_adapt(false);
+    for (int i = 0; i < 64; i++) ck_assert_int_eq(o.shares.times[i], i < UNITS);
+    for (int i = 0; i < GRAIN; i++) ck_assert_int_eq(o.shares.owner[i], 0);
+    ck_assert_double_ge(o.others_began, o.first_ended);
+    ck_assert_double_gt(timer.seconds[0], GRAIN * 1e-3);
+    ck_assert(timer.seconds[1] > 0);
+    printf("  the second begins %.1e s after the first piece\n", o.others_began - o.first_ended);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("gain");
     TCase *tests = tcase_create("gain");
@@ -363,6 +420,8 @@ int main(void) {
     tcase_add_test(tests, machines_change);
     tcase_add_test(tests, what_is_sure_is_not_tried);
     tcase_add_test(tests, pauses_of_the_machine_are_borne);
+    tcase_add_test(tests, first_phases_in_vain_are_few);
+    tcase_add_test(tests, what_is_new_begins_alone);
     tcase_add_test(tests, rare_waits_count);
     tcase_add_test(tests, costs_survive_a_pause);
     tcase_add_test(tests, tasks_are_told_apart);
