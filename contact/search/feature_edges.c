@@ -59,13 +59,20 @@ int brunt_feature_edges_of(const near_edges *edges, const brunt_contact_surface 
     return count;
 }
 
-// Whether an edge is convex and turns enough.
+// Whether an edge is convex and turns enough: of quadrilaterals that are not flat, whichever of its faces and nodes is
+// the first.
 static inline bool is_feature(const brunt_contact_surface *s, const near_edge *edge) {
     if (edge->face[1] < 0) return true;
-    const double *n = s->face_normal[edge->face[0]];
-    if (dot(n, s->face_normal[edge->face[1]]) > LEAST_TURN) return false;
-    const double *a = s->x[edge->node[0]], *centre = s->face_centre[edge->face[1]];
-    return n[0] * (centre[0] - a[0]) + n[1] * (centre[1] - a[1]) + n[2] * (centre[2] - a[2]) < 0;
+    const double *n[2] = {s->face_normal[edge->face[0]], s->face_normal[edge->face[1]]};
+    if (dot(n[0], n[1]) > LEAST_TURN) return false;
+    const double *a = s->x[edge->node[0]], *b = s->x[edge->node[1]],
+                 *centre[2] = {s->face_centre[edge->face[0]], s->face_centre[edge->face[1]]};
+    double before = 0; // of each face the other's centre
+    for (int k = 0; k < 3; k++) {
+        const double middle = 0.5 * (a[k] + b[k]);
+        before += n[0][k] * (centre[1][k] - middle) + n[1][k] * (centre[0][k] - middle);
+    }
+    return before < 0;
 }
 
 static feature_edge feature_of(const brunt_contact_surface *s, const near_edge *edge) {
