@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "contact/planes/boundary.h"
 
 enum { LAYERS = BRUNT_IMAGE_LAYERS };
@@ -86,10 +87,11 @@ static real turned(const brunt_symmetry_plane *symmetry_plane, int dim, int r) {
     return turns ? -1 : 1;
 }
 
-static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, bearing *b) {
-    const brunt_grid *grid = &body->grid;
+// The nodes of slots [from, end) and their images, which no others have.
+static void fold_slots(const brunt_grid *grid, const brunt_symmetry_plane *symmetry_plane, int32_t from, int32_t end,
+                       bearing *b) {
     const int dim = grid->dim, axis = symmetry_plane->axis;
-    for (int32_t s = 0; s < grid->slot_count; s++) {
+    for (int32_t s = from; s < end; s++) {
         const brunt_slot *slot = &grid->slots[s];
         int32_t first = slot->coord[axis] * grid->side;
         if (first > symmetry_plane->node || first + grid->side <= symmetry_plane->node - LAYERS) continue;
@@ -124,6 +126,22 @@ static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, b
             bear(b, grid, to, m, image_before);
         }
     }
+}
+
+// Slots are folded by chunks, each with what is borne in it; as many for any number of threads.
+enum { CHUNKS = 16 };
+typedef struct fold_job {
+    const brunt_grid *grid;
+    const brunt_symmetry_plane *plane;
+    bearing *borne; // by chunk
+} fold_job;
+
+static void fold_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const fold_job *j = context;
+    const int64_t slots = j->grid->slot_count;
+    for (int64_t c = begin; c < end; c++)
+        fold_slots(j->grid, j->plane, (int32_t)(slots * c / CHUNKS), (int32_t)(slots * (c + 1) / CHUNKS), &j->borne[c]);
 }
 
 // ------------------------------------------------------------------------------------------ between two symmetry
@@ -176,17 +194,24 @@ static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[
 }
 
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
-                         brunt_impulse_account *const *account) {
-    bearing b = {.plane = symmetry, .count = symmetry_count, .taken = taken};
+                         brunt_impulse_account *const *account, int threads, brunt_timer *timer) {
+    bearing borne[CHUNKS], all = {.plane = symmetry, .count = symmetry_count, .taken = taken};
+    for (int c = 0; c < CHUNKS; c++) borne[c] = all;
     for (int m = 0; m < symmetry_count; m++) {
-        fold(body, &symmetry[m], &b);
+        fold_job job = {&body->grid, &symmetry[m], borne};
+        brunt_parallel(threads, CHUNKS, 1, fold_chunks, &job, timer);
         for (int k = 0; k < m; k++) {
             const int32_t apart = symmetry[k].axis == symmetry[m].axis ? abs(symmetry[k].node - symmetry[m].node) : 0;
             if (apart > 0 && apart <= 2 * LAYERS)
-                share_between(body, (brunt_symmetry_plane[2]){symmetry[k], symmetry[m]}, &b);
+                share_between(body, (brunt_symmetry_plane[2]){symmetry[k], symmetry[m]}, &all);
         }
     }
-    for (int m = 0; m < symmetry_count; m++) brunt_impulse_account_reaction(account[m], b.linear[m], b.angular[m]);
+    for (int m = 0; m < symmetry_count; m++) {
+        for (int c = 0; c < CHUNKS; c++)
+            for (int a = 0; a < 3; a++)
+                all.linear[m][a] += borne[c].linear[m][a], all.angular[m][a] += borne[c].angular[m][a];
+        brunt_impulse_account_reaction(account[m], all.linear[m], all.angular[m]);
+    }
 }
 
 // ------------------------------------------------------------------------------------------ what moves on

@@ -24,7 +24,7 @@ enum { BRUNT_IMAGE_LAYERS = 2 };
 // `taken`: the share of the grid's velocity that particles take over, 1 where they keep nothing of their own; the rest
 // of what the symmetry planes do to the old velocity never reaches them.
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
-                         brunt_impulse_account *const *account);
+                         brunt_impulse_account *const *account, int threads, brunt_timer *timer);
 // What APIC's share keeps of the old velocity v moves on with it within the step, while what the planes have done to
 // its momentum is booked at the nodes: dt a sum v x p of the body's own momenta p before they were added up, which are
 // along v but near planes. Keeps those momenta: `own` has room for three numbers a node of the grid.

@@ -86,10 +86,11 @@ static void find_symmetry(brunt_boundaries *boundaries, const brunt_body *body, 
 }
 
 // Sums of the grid's nodes and of their images by the symmetry planes that act on a body, recorded when `accounted`.
-static void fold_symmetry(brunt_boundaries *boundaries, brunt_body *body, double taken, bool accounted) {
+static void fold_symmetry(brunt_world *world, brunt_body *body, double taken, bool accounted) {
     acting_symmetry s;
-    find_symmetry(boundaries, body, accounted, &s);
-    brunt_symmetry_fold(body, s.plane, s.count, taken, s.account);
+    find_symmetry(&world->boundaries, body, accounted, &s);
+    brunt_symmetry_fold(body, s.plane, s.count, taken, s.account, world->settings.threads,
+                        brunt_pass_timer(&world->timing));
 }
 
 // The same where APIC keeps `kept`: the rest is taken, and what is kept moves on.
@@ -100,7 +101,8 @@ static int fold_kept(brunt_world *world, brunt_body *body, double kept, double d
     if (BRUNT_CAPACITY(world->scratch.own_momenta, reals, 0, "momenta of nodes", error))
         return brunt_fail_inner(&world->clock, body, error);
     brunt_symmetry_remember(body, s.plane, s.count, world->scratch.own_momenta);
-    brunt_symmetry_fold(body, s.plane, s.count, 1 - kept, s.account);
+    brunt_symmetry_fold(body, s.plane, s.count, 1 - kept, s.account, world->settings.threads,
+                        brunt_pass_timer(&world->timing));
     brunt_symmetry_carry(body, s.plane, s.count, world->scratch.own_momenta, kept * dt, s.account);
     return BRUNT_OK;
 }
@@ -133,7 +135,7 @@ int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error
     const brunt_settings *s = &world->settings; // what particles keep of their own knows nothing of the images
     const double kept = kept_of(s, step->body, step->dt);
     if (s->apic > 0) return fold_kept(world, step->body, kept, step->dt, error);
-    fold_symmetry(&world->boundaries, step->body, 1 - kept, true);
+    fold_symmetry(world, step->body, 1 - kept, true);
     return BRUNT_OK;
 }
 
@@ -257,7 +259,7 @@ static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, musl_blocks, &job, timer);
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, p2g_blocks, &still, timer);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &nodes, timer);
-    fold_symmetry(&world->boundaries, body, 1, false);
+    fold_symmetry(world, body, 1, false);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
     int w;
     brunt_boundary_walk acting = brunt_boundaries_of(&world->boundaries.acting, body->index);
