@@ -50,7 +50,8 @@ def build(targets):
 
 
 def suites_pass(suites):
-    done = subprocess.run(["ctest", "--test-dir", "build", "--stop-on-failure", "-j", str(os.cpu_count()), "-R", "^(%s)$" % "|".join(suites)],
+    # What a mistake makes go on for ever is noticed as well.
+    done = subprocess.run(["ctest", "--test-dir", "build", "--stop-on-failure", "--timeout", "600", "-j", str(os.cpu_count()), "-R", "^(%s)$" % "|".join(suites)],
                           cwd=COPY, capture_output=True)
     return done.returncode == 0
 
