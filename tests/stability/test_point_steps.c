@@ -103,7 +103,7 @@ static double swinging_growth(const lone *c, int points, double cfl) {
         for (int a = 0; a < 3; a++) low[a] = h * (0.12 + (2 * a + 1) * o / (double)PLACES), high[a] = low[a] + 4 * h;
         brunt_body_def *b = def_box(&def, "a", low, high);
         b->spacing = h / points;
-        for (int a = 0; a < c->dimension; a++) b->wave_velocity[a] = 1e-5, b->wave_vector[a] = 17 + 6 * a;
+        for (int a = 0; a < c->dimension; a++) b->wave_velocity[a] = 1e-3, b->wave_vector[a] = 17 + 6 * a;
         brunt_world *world = world_take(&def);
         brunt_error error = {0};
         int status = BRUNT_OK;
