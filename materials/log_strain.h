@@ -53,8 +53,8 @@ BRUNT_INLINE bool log_strain_all_near_dim(int dim, real *const *F, int64_t begin
     for (int l = 0; l < LOG_STRAIN_STEP; l++) all = all && negative[l] < 0;
     return all;
 }
-static inline bool log_strain_all_near(int dim, real *const *F, int64_t begin, int64_t end, double limit) {
-    const real near = log_strain_near(limit);
+// `near`: log_strain_near of a limit.
+static inline bool log_strain_all_near(int dim, real *const *F, int64_t begin, int64_t end, real near) {
     return dim == 3 ? log_strain_all_near_dim(3, F, begin, end, near) : log_strain_all_near_dim(2, F, begin, end, near);
 }
 

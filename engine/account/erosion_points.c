@@ -25,6 +25,7 @@ typedef struct job {
     brunt_body *body;
     const real *damage; // NULL: failure of the material takes no point away
     double strain;      // [-] INFINITY: strain takes none away
+    real near;          // log_strain_near of it
 } job;
 
 // The component whose state is called damage: of the failure model, or of a strength model that knows when it fails.
@@ -81,11 +82,11 @@ static void mark_block(const job *j, int32_t b) {
     const bool failed = j->damage && report->failed;
     const bool strained = isfinite(j->strain) &&
                           !log_strain_all_near(p->point_dim, brunt_field(p, BRUNT_FIELD_deformation_gradient),
-                                               block->first, end, j->strain) &&
+                                               block->first, end, j->near) &&
                           may_be_strained(j, block->first, end);
-    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     report->leaving = 0;
     if (!failed && !strained && !report->turned) return;
+    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     for (int64_t s = block->first; s < end; s++) {
         if (!report->turned) p->order[s] = BRUNT_STAYS; // else the gather has marked them
         if (failed && p->order[s] == BRUNT_STAYS && j->damage[s] >= 1) p->order[s] = BRUNT_LEAVES_FAILED;
@@ -164,7 +165,8 @@ static void take_out(brunt_body *body, const int64_t *slots, int64_t count) {
 }
 
 static void erode(brunt_erosion *erosion, const brunt_erosion_step *step, brunt_body *body) {
-    job j = {body, body->fails ? find_damage(body) : NULL, erosion->rule[body->index].strain};
+    const double strain = erosion->rule[body->index].strain;
+    job j = {body, body->fails ? find_damage(body) : NULL, strain, log_strain_near(strain)};
     int64_t *slots = body->particles.spare_id; // free until the next sort
     brunt_eroded *account = &erosion->account[body->index];
     brunt_ledger *ledger = step->ledger;

@@ -138,7 +138,7 @@ void brunt_fem_mark_strained(brunt_fem_body *body, int32_t b, double limit) {
     const int32_t end = block->first + block->count;
     if (!body->traits->membrane &&
         log_strain_all_near(body->point_dim, brunt_element_scalars(body, BRUNT_ELEMENT_deformation_gradient),
-                            block->first, end, limit))
+                            block->first, end, log_strain_near(limit)))
         return;
     if (!may_be_strained(body, block->first, end, limit)) return;
     for (int32_t s = block->first; s < end; s += BRUNT_LANES) {
