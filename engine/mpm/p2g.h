@@ -6,7 +6,8 @@
 //   node += wz_k (wy_j X_i + wx_i Y_j) + wx_i wy_j Z_k
 // where a = (m, m v), B = m C column by column, and T = -dt V0 tau column by column; momentum and force impulse travel
 // in one vector of eight reals. A tile of particles is staged lane by lane, transposed, and then given to the nodes
-// particle by particle. Particles of one bin follow each other, so sums stay in registers until the bin changes.
+// particle by particle: those of a tile that follow each other in one bin are summed in registers, as many rows of
+// nodes at a time as these hold, from where the nodes stand.
 //
 // AXISYMMETRIC: particles are rings about x = 0, with the masses and volumes of full circles. Their stress works on the
 // hoop rate v_r / r as well, v_r = sum w v_i at the particle and r its distance from the axis, both at the start of the
