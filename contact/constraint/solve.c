@@ -20,14 +20,13 @@ static const double DIVERGES = 10;  // times the correction of the first sweep i
 static const double AT_REST = 0.02; // of the correction that ends the sweeps: what corrects less may rest
 static const double PARALLEL = sizeof(real) == sizeof(double) ? 1e-9 : 1e-5; // unit vectors that differ by rounding
 
-// Quads of three components and one number that does not count: whatever follows them in memory.
-
 // Of a degree-of-freedom node, before the forces or as it is now.
 static inline const double *velocity_of(const brunt_constraint_set *p, int32_t node, bool old) {
     return old ? p->dof_node[node].old : p->now ? p->now[node] : p->dof_node[node].v;
 }
 
-// Of what does not turn, with the weights of `entry` and the `count` - 1 after it.
+// Of what does not turn, with the weights of `entry` and the `count` - 1 after it. Quads here are three components and
+// a number that does not count: whatever follows them in memory.
 static inline quad plain_velocity(const brunt_constraint_set *p, const brunt_constraint_entry *entry, int32_t count,
                                   bool old) {
     quad u = {0};

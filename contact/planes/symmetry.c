@@ -195,6 +195,7 @@ static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[
 
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
                          brunt_impulse_account *const *account, int threads, brunt_timer *timer) {
+    if (!symmetry_count) return;
     bearing borne[CHUNKS], all = {.plane = symmetry, .count = symmetry_count, .taken = taken};
     for (int c = 0; c < CHUNKS; c++) borne[c] = all;
     for (int m = 0; m < symmetry_count; m++) {

@@ -101,10 +101,11 @@ static int run_together(int threads, const phase *p, bool timed, span *spans) {
     return workers;
 }
 
-// Of a phase that has not been met its first piece, on this thread: what the rest will take is known by it.
+// Of a phase that has not been met its first piece, on this thread: what the rest will take is known by it, where there
+// is room to remember it.
 static void run_first_piece(phase *p) {
     const brunt_gain_choice choice = brunt_gain_choose(&gains, p->task, p->count);
-    if (choice.expected > 0 || p->count <= p->grain) return;
+    if (choice.task < 0 || choice.expected > 0 || p->count <= p->grain) return;
     const double begin = brunt_clock();
     p->task(p->context, p->first, p->first + p->grain, 0);
     const double end = brunt_clock();
