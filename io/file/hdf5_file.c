@@ -2,10 +2,10 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <libdeflate.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include "base/error.h"
 #include "io/file/input_file.h"
@@ -37,12 +37,11 @@ hid_t brunt_hdf5_create(size_t bytes_expected) {
     return create("in memory", access);
 }
 
-static void print_block(char block[BRUNT_HDF5_USER_BLOCK], const char *kind, int format, size_t length,
-                        unsigned long sum) {
+static void print_block(char block[BRUNT_HDF5_USER_BLOCK], const char *kind, int format, size_t length, uint32_t sum) {
     memset(block, 0, BRUNT_HDF5_USER_BLOCK);
     snprintf(block, BRUNT_HDF5_USER_BLOCK,
              "brunt %s, format %d, %zu bytes of HDF5 follow this block of 512, CRC-32 %08lx\n", kind, format, length,
-             sum);
+             (unsigned long)sum);
 }
 
 int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path, brunt_atomic_file *out,
@@ -59,12 +58,7 @@ int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path,
     const unsigned char *data = *(unsigned char **)handle;
     size_t length = (size_t)size - BRUNT_HDF5_USER_BLOCK;
     char block[BRUNT_HDF5_USER_BLOCK];
-    unsigned long sum = 0;
-    for (size_t at = 0; at < length; at += 1u << 30) {
-        size_t part = length - at < 1u << 30 ? length - at : 1u << 30;
-        sum = crc32(sum, data + BRUNT_HDF5_USER_BLOCK + at, (uInt)part);
-    }
-    print_block(block, kind, format, length, sum);
+    print_block(block, kind, format, length, libdeflate_crc32(0, data + BRUNT_HDF5_USER_BLOCK, length));
     int status = brunt_atomic_open(out, path, error);
     if (!status) {
         status = brunt_atomic_write(out, block, sizeof block, error);
@@ -109,10 +103,10 @@ static int put_block(const char *kind, int format, brunt_atomic_file *out, brunt
     if (!piece) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", out->path);
     const int descriptor = fileno(out->stream);
     size_t length = 0;
-    unsigned long sum = 0;
+    uint32_t sum = 0;
     ssize_t got;
     while ((got = pread(descriptor, piece, PIECE, (off_t)(BRUNT_HDF5_USER_BLOCK + length))) > 0) {
-        sum = crc32(sum, piece, (uInt)got);
+        sum = libdeflate_crc32(sum, piece, (size_t)got);
         length += (size_t)got;
     }
     brunt_free(piece);
@@ -153,7 +147,8 @@ static int verify(FILE *stream, const char *path, const char *kind, int format, 
     char found[32];
     int found_format;
     size_t length, got = 0;
-    unsigned long wanted, sum = 0;
+    unsigned long wanted;
+    uint32_t sum = 0;
     if (!parse_block(stream, found, &found_format, &length, &wanted))
         return brunt_fail(error, BRUNT_BAD_INPUT, "%s: not a brunt %s, or its beginning is damaged", path, kind);
     if (strcmp(found, kind))
@@ -164,7 +159,7 @@ static int verify(FILE *stream, const char *path, const char *kind, int format, 
     enum { PIECE = 1 << 20 };
     unsigned char *piece = brunt_alloc(PIECE);
     if (!piece) return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
-    for (size_t n; (n = fread(piece, 1, PIECE, stream)) > 0; got += n) sum = crc32(sum, piece, (uInt)n);
+    for (size_t n; (n = fread(piece, 1, PIECE, stream)) > 0; got += n) sum = libdeflate_crc32(sum, piece, n);
     brunt_free(piece);
     if (ferror(stream)) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot read the file: %s", path, strerror(errno));
     if (got < length)

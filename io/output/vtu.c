@@ -1,8 +1,8 @@
 #include "io/output/vtu.h"
 
+#include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 #include "io/file/atomic_file.h"
 #include "base/error.h"
@@ -22,6 +22,7 @@ typedef struct byte_buffer {
 typedef struct vtu_writer {
     FILE *header;
     byte_buffer appended, scratch;
+    struct libdeflate_compressor *compressor;
     bool float32;
     brunt_error *error;
 } vtu_writer;
@@ -39,21 +40,22 @@ static void put_word(unsigned char *at, uint64_t word) {
 // Appends one array as VTK's compressed blocks: [blocks, block size, size of the last one if partial else 0, compressed
 // sizes...] and the blocks. An array of no bytes is [0, block size, 0]; one that fills its last block has partial size
 // 0.
-static int append_compressed(byte_buffer *out, const unsigned char *data, size_t bytes, brunt_error *error) {
+static int append_compressed(vtu_writer *w, const unsigned char *data, size_t bytes) {
+    byte_buffer *out = &w->appended;
     size_t full = bytes / BLOCK_BYTES, partial = bytes % BLOCK_BYTES, blocks = full + (partial ? 1 : 0);
     size_t header = 8 * (3 + blocks), start = out->size;
-    int status = reserve(out, header + blocks * compressBound(BLOCK_BYTES), error);
+    const size_t room = libdeflate_zlib_compress_bound(w->compressor, BLOCK_BYTES);
+    int status = reserve(out, header + blocks * room, w->error);
     if (status) return status;
     put_word(out->data + start, blocks);
     put_word(out->data + start + 8, BLOCK_BYTES);
     put_word(out->data + start + 16, partial);
     out->size += header;
     for (size_t b = 0; b < blocks; b++) {
-        size_t size = b < full ? BLOCK_BYTES : partial;
-        uLongf packed = compressBound(BLOCK_BYTES);
-        // Level 1: pictures are written while a run waits; higher levels take several times as long for a few percent.
-        if (compress2(out->data + out->size, &packed, data + b * BLOCK_BYTES, size, 1) != Z_OK)
-            return brunt_fail(error, BRUNT_FAILED, "zlib could not compress a picture");
+        const size_t size = b < full ? BLOCK_BYTES : partial;
+        const size_t packed =
+            libdeflate_zlib_compress(w->compressor, data + b * BLOCK_BYTES, size, out->data + out->size, room);
+        if (!packed) return brunt_fail(w->error, BRUNT_FAILED, "a picture could not be compressed");
         put_word(out->data + start + 24 + 8 * b, packed);
         out->size += packed;
     }
@@ -110,14 +112,14 @@ static int append_array(vtu_writer *w, const brunt_vtu_array *array, int64_t cou
             put_word(scratch->data + 8 * i, (uint64_t)array->integers[i]);
         else
             put_double(scratch->data + width * i, array->values[i], float32);
-    return append_compressed(&w->appended, scratch->data, values * width, w->error);
+    return append_compressed(w, scratch->data, values * width);
 }
 
 // Starts an integer array of the cells. Its data are in `scratch`.
 static int append_integers(vtu_writer *w, const char *type, const char *name) {
     fprintf(w->header, "        <DataArray type=\"%s\" Name=\"%s\" format=\"appended\" offset=\"%zu\"/>\n", type, name,
             w->appended.size);
-    return append_compressed(&w->appended, w->scratch.data, w->scratch.size, w->error);
+    return append_compressed(w, w->scratch.data, w->scratch.size);
 }
 
 static int append_cells(vtu_writer *w, const brunt_vtu_grid *grid) {
@@ -203,8 +205,11 @@ int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, c
     int status = brunt_atomic_open(&file, path, error);
     if (status) return status;
     vtu_writer w = {.header = file.stream, .float32 = float32, .error = error};
+    // Level 1: pictures are written while a run waits; higher levels take several times as long for a few percent.
+    w.compressor = libdeflate_alloc_compressor(1);
+    if (!w.compressor) status = brunt_fail(error, BRUNT_FAILED, "out of memory while writing a picture");
     // Space for one byte at least, so that an empty array has an address.
-    status = reserve(&w.scratch, 1, error);
+    if (!status) status = reserve(&w.scratch, 1, error);
     if (!status) status = write_header(&w, time, grid, arrays, array_count);
     if (!status) status = brunt_atomic_write(&file, w.appended.data, w.appended.size, error);
     if (!status) {
@@ -213,6 +218,7 @@ int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, c
     } else {
         brunt_atomic_abandon(&file);
     }
+    libdeflate_free_compressor(w.compressor);
     brunt_free(w.appended.data);
     brunt_free(w.scratch.data);
     return status;

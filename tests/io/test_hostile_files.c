@@ -3,8 +3,8 @@
 #include "tests/support/small_program.h"
 
 #include <hdf5.h>
+#include <libdeflate.h>
 #include <sys/stat.h>
-#include <zlib.h>
 
 static void set_up(void) {
     small_folder_make();
@@ -23,7 +23,7 @@ static void reseal(const char *path, const char *kind) {
     ck_assert_int_eq(sscanf(bytes, "brunt %*[a-z], format %d", &format), 1);
     memset(bytes, 0, BLOCK);
     snprintf(bytes, BLOCK, "brunt %s, format %d, %zu bytes of HDF5 follow this block of 512, CRC-32 %08lx\n", kind,
-             format, (size_t)size - BLOCK, crc32(0, (unsigned char *)bytes + BLOCK, (uInt)(size - BLOCK)));
+             format, (size_t)size - BLOCK, (unsigned long)libdeflate_crc32(0, bytes + BLOCK, (size_t)size - BLOCK));
     small_write(path, bytes, size);
     free(bytes);
 }
