@@ -22,7 +22,7 @@
 // step.
 #include "materials/energy_state.h"
 
-enum { DENSITY = ENERGY_CONSTANTS, SOUND_SPEED, SLOPE, GAMMA, STIFFNESS, TENSION };
+enum { INVERSE_DENSITY = ENERGY_CONSTANTS, SOUND_SPEED, SLOPE, GAMMA, STIFFNESS, INVERSE_STIFFNESS, TENSION };
 
 static const brunt_parameter parameters[] = {
     {"c0", "m/s", NAN, 0, INFINITY, true, true, "bulk sound speed at rest: Us = c0 + s up"},
@@ -35,34 +35,51 @@ static const brunt_parameter parameters[] = {
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
     (void)with_eos;
-    constants[DENSITY] = (real)density;
+    constants[INVERSE_DENSITY] = (real)(1 / density);
     constants[SOUND_SPEED] = (real)p[0];
     constants[SLOPE] = (real)p[1];
     constants[GAMMA] = (real)p[2];
     constants[INITIAL_ENERGY] = (real)p[3];
     constants[STIFFNESS] = (real)(density * p[0] * p[0]);
+    constants[INVERSE_STIFFNESS] = (real)(1 / (density * p[0] * p[0]));
     constants[TENSION] = (real)p[4];
     return NULL;
 }
 
-// What of the pressure does not depend on the energy, for J - 1 = change; `valid` is 1 - s eta, which must be positive.
-BRUNT_INLINE lanes cold_pressure(const real *k, lanes change, lanes *valid) {
-    lanes eta = -change;
-    lanes denominator = lanes_select(change > 0, 1 + change, 1 - k[SLOPE] * eta);
-    lanes inverse = 1 / denominator;
-    *valid = denominator;
-    lanes hugoniot = eta * inverse * inverse * (1 - (real)0.5 * k[GAMMA] * eta);
-    return k[STIFFNESS] * lanes_select(change > 0, eta * inverse, hugoniot);
+// The law at J - 1 = change.
+typedef struct gruneisen {
+    lanes valid;   // 1 - s eta, which must be positive; in expansion J
+    lanes inverse; // of that
+    lanes cold;    // what of the pressure does not depend on the energy
+    lanes thermal; // pressure per energy, g
+} gruneisen;
+
+BRUNT_INLINE gruneisen gruneisen_at(const real *k, lanes change) {
+    const lane_mask expands = change > 0;
+    const lanes eta = -change;
+    gruneisen at = {.valid = lanes_select(expands, 1 + change, 1 - k[SLOPE] * eta)};
+    at.inverse = 1 / at.valid;
+    const lanes hugoniot = eta * at.inverse * at.inverse * (1 - (real)0.5 * k[GAMMA] * eta);
+    at.cold = k[STIFFNESS] * lanes_select(expands, eta * at.inverse, hugoniot);
+    at.thermal = k[GAMMA] * lanes_select(expands, at.inverse, lanes_set(1));
+    return at;
 }
 
-// Pressure per energy, g.
-BRUNT_INLINE lanes thermal(const real *k, lanes change) { return k[GAMMA] / (1 + lanes_max(change, lanes_set(0))); }
+// c^2 = J^2 / rho0 (dp/deta at constant e + g p); in expansion c0^2 + J (gamma0 p + g e) / rho0.
+BRUNT_INLINE lanes speed_squared(const real *k, const gruneisen *at, lanes change, lanes e, lanes p) {
+    const lanes J = 1 + change, eta = -change, inverse = at->inverse;
+    const lanes r = 1 - (real)0.5 * k[GAMMA] * eta;
+    const lanes squeezed = inverse * inverse * ((1 + k[SLOPE] * eta) * inverse * r - (real)0.5 * k[GAMMA] * eta);
+    const lanes expanding = inverse * (inverse + at->thermal * e * k[INVERSE_STIFFNESS]);
+    const lanes slope = lanes_select(change > 0, expanding, squeezed);
+    return J * J * (k[STIFFNESS] * slope + at->thermal * p) * k[INVERSE_DENSITY];
+}
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], valid, valid_before;
+        lanes H[9];
         load_displacement_gradient(dim, points, i, H);
         lanes change = volume_change(dim, H), J = 1 + change;
         load_step_gradient(dim, points, i, H);
@@ -71,25 +88,20 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
         note_deformation(&record, lanes_select(1 + step > 0, J, lanes_set(0)), i);
 
         lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i);
-        lanes p_old = cold_pressure(k, change - dJ, &valid_before) + thermal(k, change - dJ) * e;
+        const gruneisen before = gruneisen_at(k, change - dJ), at = gruneisen_at(k, change);
+        lanes p_old = before.cold + before.thermal * e;
         if (tears) p_old = lanes_max(p_old, tear_pressure(k[TENSION], points->integrity_before, i));
-        lanes cold = cold_pressure(k, change, &valid), g = thermal(k, change);
         const energy_step begin = {e, p_old, dJ, step_heat(points, i, dJ)};
-        lanes e_new = (e - half * (p_old + cold) * dJ + begin.heat) / (1 + half * g * dJ);
-        lanes p = cold + g * e_new;
+        lanes e_new = (e - half * (p_old + at.cold) * dJ + begin.heat) / (1 + half * at.thermal * dJ);
+        lanes p = at.cold + at.thermal * e_new;
         lane_mask torn = {0};
         if (tears) torn = tear_at(&begin, tear_pressure(k[TENSION], points->integrity, i), &e_new, &p);
-        note_first(&record.model, ~(valid > 0), i);
+        note_first(&record.model, ~(at.valid > 0), i);
         store_energy_step(points, i, e_new, -half * (p_old + p) * dJ, J * p);
 
-        // c^2 = J^2 / rho0 (dp/deta at constant e + g p); in expansion c0^2 + J (gamma0 p + g e) / rho0.
-        lanes eta = -change, inverse = 1 / valid, r = 1 - half * k[GAMMA] * eta;
-        lanes slope = inverse * inverse * ((1 + k[SLOPE] * eta) * inverse * r - half * k[GAMMA] * eta);
-        lanes expanding = 1 / (J * J) + g * e_new / (J * k[STIFFNESS]);
-        slope = lanes_select(change > 0, expanding, slope);
-        lanes speed2 = J * J * (k[STIFFNESS] * slope + g * p) / k[DENSITY];
+        lanes speed2 = speed_squared(k, &at, change, e_new, p);
         // What is torn closes again at c0.
-        if (tears) speed2 = lanes_select(torn, lanes_set(k[STIFFNESS] / k[DENSITY]), speed2);
+        if (tears) speed2 = lanes_select(torn, lanes_set(k[STIFFNESS] * k[INVERSE_DENSITY]), speed2);
         note_speed(&record, speed2);
     }
     return update_end(&record, points, "compressed beyond the Mie-Gruneisen equation of state (1 - s (1 - J) <= 0)");
@@ -108,7 +120,7 @@ static void add_energy(const real *constants, const brunt_material_points *point
 
 static real wave_speed(const real *constants) {
     double c0 = (double)constants[SOUND_SPEED], gamma = (double)constants[GAMMA];
-    return (real)sqrt(c0 * c0 + gamma * gamma * (double)constants[INITIAL_ENERGY] / (double)constants[DENSITY]);
+    return (real)sqrt(c0 * c0 + gamma * gamma * (double)constants[INITIAL_ENERGY] * (double)constants[INVERSE_DENSITY]);
 }
 
 const brunt_model brunt_mie_gruneisen = {

@@ -57,7 +57,8 @@ static inline real j2_wave_speed(const real *constants) {
 typedef struct j2_point {
     lanes volume_change;      // J - 1
     lanes m, d[6], dd, det_d; // trial b = m I + d; d:d
-    lanes q, q_old;           // von Mises stress of the trial and of the last step
+    lanes q, q_old;           // von Mises stress: of the trial, from j2_return on of the end; of the last step
+    lanes inverse_q;          // of the trial, with the stiffness
     lanes stiffness;          // 3 mu_bar: q falls by it per unit of plastic strain
     lanes plastic_strain;     // of the last step
 } j2_point;
@@ -141,7 +142,8 @@ BRUNT_INLINE void j2_set_stiffness_at(const real *k, j2_point *p, lanes share) {
 
 // At the middle of the return, whose end q_old estimates (exactly so in steady flow).
 BRUNT_INLINE void j2_set_stiffness(const real *k, j2_point *p) {
-    j2_set_stiffness_at(k, p, (real)0.5 * (1 + lanes_min(p->q_old / p->q, lanes_set(1))));
+    p->inverse_q = 1 / p->q;
+    j2_set_stiffness_at(k, p, (real)0.5 * (1 + lanes_min(p->q_old * p->inverse_q, lanes_set(1))));
 }
 
 // What is left of the flow stress, 1 to 0; and the stiffness of a return that may end much lower for it: where the area
@@ -154,21 +156,26 @@ BRUNT_INLINE void j2_set_softened_stiffness(const real *k, const brunt_material_
                                             j2_point *p) {
     lanes before = lanes_load(points->integrity_before + i), now = lanes_load(points->integrity + i);
     lanes end = p->q_old * lanes_select(before > 0, now / before, lanes_set(0));
-    lanes r = lanes_min(end / p->q, lanes_set(1));
+    p->inverse_q = 1 / p->q;
+    lanes r = lanes_min(end * p->inverse_q, lanes_set(1));
     j2_set_stiffness_at(k, p, (real)(2.0 / 3) * (1 + r * (1 + r)) / (1 + r));
 }
 
 // Scales d by q_new / q where `plastic`, and solves m^3 - (d:d/2) m + det d = 1 for m by Newton's method. The start is
-// the root to second order in d:d while that is small, else a bound above the root, from where Newton falls
-// monotonically. Lanes stop one by one, so that a point's bits do not depend on its neighbours.
+// the root to second order in d:d while that is small, else (strains of 1: seldom) a bound above the root, from where
+// Newton falls monotonically. Lanes stop one by one, so that a point's bits do not depend on its neighbours.
 BRUNT_INLINE void j2_return(int dim, j2_point *p, lane_mask plastic, lanes q_new) {
-    lanes ratio = lanes_select(plastic, q_new / p->q, lanes_set(1));
+    lanes ratio = lanes_select(plastic, q_new * p->inverse_q, lanes_set(1));
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) p->d[c] *= ratio;
     p->dd *= ratio * ratio;
     p->det_d *= ratio * ratio * ratio;
-    lanes half = (real)0.5 * p->dd, root = lanes_sqrt(half);
-    lanes m = lanes_select(half < 1, 1 + (half - p->det_d) * (real)(1.0 / 3),
-                           (real)1.2 * root + (real)0.5 / lanes_max(half, lanes_set(1)));
+    p->q = lanes_select(plastic, q_new, p->q);
+    lanes half = (real)0.5 * p->dd, m = 1 + (half - p->det_d) * (real)(1.0 / 3);
+    const lane_mask small = half < 1;
+    if (lanes_any(~small)) {
+        const lanes above = (real)1.2 * lanes_sqrt(half) + (real)0.5 / lanes_max(half, lanes_set(1));
+        m = lanes_select(small, m, above);
+    }
     lane_mask active = plastic;
     for (int step = 0; step < 60 && lanes_any(active); step++) {
         lanes change = (m * (m * m - half) + (p->det_d - 1)) / (3 * m * m - half);
@@ -204,9 +211,9 @@ BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_material_points 
     lanes_store(plastic_work, lanes_load(plastic_work) + work);
     if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
     if (points->strain_increment) lanes_store(points->strain_increment + i, flow.delta);
-    // Along n: rho0 c^2 = kappa (J^2 + 1)/2 + 4/3 mu m - s_nn / 3.
+    // Along n: rho0 c^2 = kappa (J^2 + 1)/2 + 4/3 mu m - s_nn / 3, and |s_nn| <= 2/3 q.
     lanes volumetric = k[J2_KAPPA] * (1 + p->volume_change * (1 + (real)0.5 * p->volume_change));
-    lanes shear = k[J2_MU] * ((real)(4.0 / 3) * p->m + (real)(1.0 / 3) * lanes_sqrt((real)(2.0 / 3) * p->dd));
+    lanes shear = (real)(4.0 / 3) * k[J2_MU] * p->m + (real)(2.0 / 9) * p->q;
     note_speed(record, k[J2_INVERSE_DENSITY] * (volumetric + shear));
     return work;
 }

@@ -78,9 +78,15 @@ BRUNT_INLINE lanes lanes_sqrt(lanes a) {
 }
 
 BRUNT_INLINE bool lanes_any(lane_mask m) {
+#if defined(BRUNT_WHOLE_ROOTS) && defined(BRUNT_FLOAT)
+    return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0;
+#elif defined(BRUNT_WHOLE_ROOTS)
+    return _mm512_test_epi64_mask((__m512i)m, (__m512i)m) != 0;
+#else
     lane_int any = 0;
     for (int l = 0; l < BRUNT_LANES; l++) any |= m[l];
     return any != 0;
+#endif
 }
 
 // Sums and extremes over the lanes, always in lane order.
