@@ -29,6 +29,23 @@ static inline void add_internal_energy(const real *constants, const brunt_materi
     energy->internal += total_end(&stored);
 }
 
+// J at the end of a step and its change in it, of J_old = J / (1 + v): dJ = J v / (1 + v).
+typedef struct volume_step {
+    lanes change, J, dJ, growth; // J - 1; J; of J in the step; v
+} volume_step;
+
+BRUNT_INLINE volume_step load_volume_step(int dim, const brunt_material_points *points, int32_t i,
+                                          update_record *record) {
+    lanes H[9];
+    load_displacement_gradient(dim, points, i, H);
+    volume_step s = {.change = volume_change(dim, H)};
+    load_step_gradient(dim, points, i, H);
+    s.growth = volume_change(dim, H);
+    s.J = 1 + s.change, s.dJ = s.J * (s.growth / (1 + s.growth));
+    note_deformation(record, lanes_select(1 + s.growth > 0, s.J, lanes_set(0)), i);
+    return s;
+}
+
 // What a step begins with, per reference volume: energy and pressure, the change of J, the heat of flow and viscosity.
 typedef struct energy_step {
     lanes energy, pressure, change, heat;

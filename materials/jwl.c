@@ -133,14 +133,8 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     const real rate = k[DETONATION_SPEED] / (k[WIDTH] * points->cell);
     const lanes zero = lanes_set(0), one = lanes_set(1);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9];
-        load_displacement_gradient(dim, points, i, H);
-        lanes change = volume_change(dim, H), V = 1 + change;
-        load_step_gradient(dim, points, i, H);
-        // V_old = V / (1 + v): dV = V v / (1 + v).
-        lanes step = volume_change(dim, H), dV = V * (step / (1 + step)), before = change - dV, V_old = 1 + before;
-        note_deformation(&record, lanes_select(1 + step > 0, V, zero), i);
-
+        const volume_step step = load_volume_step(dim, points, i, &record);
+        const lanes change = step.change, V = step.J, dV = step.dJ, before = change - dV, V_old = 1 + before;
         real *burnt = points->state[BURN_FRACTION] + i;
         lanes F_old = lanes_load(burnt), lit = lanes_load(points->state[IGNITION_TIME] + i);
         lanes F = (points->time - lit) * rate;
@@ -151,7 +145,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i), heat = step_heat(points, i, dV);
         cold_products old = cold(k, V_old), now = cold(k, V);
 
-        lanes m = lanes_exp(-half * w * lanes_log1p(step)), t = e - old.energy;
+        lanes m = lanes_exp(-half * w * lanes_log1p(step.growth)), t = e - old.energy;
         lanes isentrope = (m - 1) * (t * (m + 1) + heat) + (now.energy - old.energy); // e_new - e - heat
 
         lanes squeezed = lanes_min(change, zero), squeezed_before = lanes_min(before, zero);

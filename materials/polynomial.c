@@ -86,14 +86,8 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
     update_record record = update_begin();
     const real half = (real)0.5;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9];
-        load_displacement_gradient(dim, points, i, H);
-        lanes change = volume_change(dim, H), J = 1 + change, mu = -change / J;
-        load_step_gradient(dim, points, i, H);
-        // J_old = J / (1 + v): dJ = J v / (1 + v).
-        lanes step = volume_change(dim, H), dJ = J * (step / (1 + step)), before = change - dJ;
-        note_deformation(&record, lanes_select(1 + step > 0, J, lanes_set(0)), i);
-
+        const volume_step step = load_volume_step(dim, points, i, &record);
+        const lanes change = step.change, J = step.J, dJ = step.dJ, mu = -change / J, before = change - dJ;
         line old = pressure_line(k, -before / (1 + before)), now = pressure_line(k, mu);
         lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i), p_old = old.a + old.b * e;
         if (tears) p_old = lanes_max(p_old, tear_pressure(k[TENSION], points->integrity_before, i));
