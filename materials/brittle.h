@@ -137,8 +137,7 @@ BRUNT_INLINE lanes softening_return(int dim, const real *k, j2_point *p, const s
 BRUNT_INLINE void store_pressure(const real *k, const brunt_material_points *points, int32_t i, const j2_point *p,
                                  lanes pressure, lanes stiffness, update_record *record) {
     for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - pressure);
-    lanes shear = k[J2_MU] * ((real)(4.0 / 3) * p->m + (real)(1.0 / 3) * lanes_sqrt((real)(2.0 / 3) * p->dd));
-    note_speed(record, k[J2_INVERSE_DENSITY] * (stiffness + shear));
+    note_speed(record, k[J2_INVERSE_DENSITY] * (stiffness + j2_shear_stiffness(k, p)));
 }
 
 BRUNT_INLINE void add_plastic_work(int dim, const brunt_material_points *points, int32_t i, lanes work) {
@@ -189,6 +188,18 @@ static inline real brittle_wave_speed(const real *constants, real bulk) {
         "tension", "Pa", INFINITY, 0, INFINITY, false, false,                                                          \
             "greatest hydrostatic tension; at most cohesion / tan(friction_angle)"                                     \
     }
+
+// Flow that opens less than friction lets it is stiffer than what stays elastic: squeezed across n, a point that gives
+// way loses pressure, with it strength, and the stress along n gains what the deviator loses of it. With A and B what
+// flow takes from the stress along n and what n adds to the yield function, per unit and by directions of the share
+// `along` of n in the axis of most pressure, rho0 c^2 grows by -A B / D: between where A < 0 < B, the greatest.
+typedef struct frictional_slope {
+    double start, by_share; // A or B: start - by_share along
+} frictional_slope;
+static inline double frictional_stiffening(frictional_slope A, frictional_slope B, double D) {
+    const double middle = 0.5 * (A.start / A.by_share + B.start / B.by_share), along = fmin(fmax(middle, 0), 1);
+    return fmax(0, -(A.start - A.by_share * along) * (B.start - B.by_share * along) / D);
+}
 
 // What is wrong with them, NULL: nothing.
 static inline const char *frictional_parameters(const double *p, bool with_eos) {

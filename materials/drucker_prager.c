@@ -16,7 +16,7 @@
 // no volume behind.
 #include "materials/brittle.h"
 
-enum { BULK = J2_CONSTANTS, COHESION, FRICTION, DILATANCY, HARDENING, TENSION };
+enum { BULK = J2_CONSTANTS, COHESION, FRICTION, DILATANCY, HARDENING, TENSION, STIFFENING };
 enum { PLASTIC_VOLUME = J2_MODEL_STATE };
 
 static const brunt_parameter parameters[] = {FRICTIONAL_PARAMETERS};
@@ -35,6 +35,10 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     constants[DILATANCY] = (real)slope_of(p[4]);
     constants[HARDENING] = (real)(share * p[5]);
     constants[TENSION] = (real)(b > 0 ? fmin(p[6], a / b) : p[6]);
+    const double mu = shear_modulus(p[0], p[1]), bulk = bulk_modulus(p[0], p[1]), beta = slope_of(p[4]);
+    constants[STIFFENING] =
+        (real)frictional_stiffening((frictional_slope){bulk * beta, 2 * mu}, (frictional_slope){bulk * b, 2 * mu},
+                                    3 * mu + b * bulk * beta + share * p[5]);
     return NULL;
 }
 
@@ -80,7 +84,8 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool dilates, const real *k
         }
         j2_store(dim, k, points, i, &p, (j2_flow){delta, q}, &record);
         if (dilates) add_plastic_work(dim, points, i, loss);
-        store_pressure(k, points, i, &p, pressure, k[BULK] * (1 + lanes_max(-elastic, zero)), &record);
+        const lanes stiffening = lanes_select(plastic, lanes_set(k[STIFFENING]), zero);
+        store_pressure(k, points, i, &p, pressure, k[BULK] * (1 + lanes_max(-elastic, zero)) + stiffening, &record);
     }
     return update_end(&record, points, NULL);
 }

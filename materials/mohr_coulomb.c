@@ -22,13 +22,29 @@
 #include "materials/brittle.h"
 #include "materials/principal.h"
 
-enum { BULK = J2_CONSTANTS, COHESION, HARDENING, FRICTION, DILATANCY, TENSION };
+enum { BULK = J2_CONSTANTS, COHESION, HARDENING, FRICTION, DILATANCY, TENSION, STIFFENING };
 enum { PLASTIC_STRAIN, PLASTIC_WORK };
 
 static const brunt_parameter parameters[] = {FRICTIONAL_PARAMETERS};
 static const brunt_state_field state[] = {{"elastic_finger_strain", "1", 6, 4, NULL},
                                           {"plastic_strain", "1", 1, 1, NULL},
                                           {"plastic_work", "J/m^3", 1, 1, NULL}};
+
+// The greatest of face 13, alone, and of the two edges, where two faces give way at once (brittle.h).
+static double stiffening(double bulk, double mu, double f, double g) {
+    const double lambda = bulk - mu * (2.0 / 3), third = f * g / 3, closing = 4 * f * g * bulk,
+                 face = 4 * mu * (1 + third);
+    const frictional_slope A[3] = {{2 * g * lambda + 2 * mu * (1 + g), 4 * mu},
+                                   {2 * g * lambda + 2 * mu * (1 + g), mu * (3 + g)},
+                                   {2 * g * lambda + mu * (1 + g), mu * (3 - g)}};
+    const frictional_slope B[3] = {{2 * f * lambda + 2 * mu * (1 + f), 4 * mu},
+                                   {2 * f * lambda + 2 * mu * (1 + f), mu * (3 + f)},
+                                   {2 * f * lambda + mu * (1 + f), mu * (3 - f)}};
+    const double D[3] = {face, 0.5 * face + mu * (1 + f + g - third), 0.5 * face + mu * (1 - f - g - third)};
+    double most = 0;
+    for (int k = 0; k < 3; k++) most = fmax(most, frictional_stiffening(A[k], B[k], D[k] + closing));
+    return most;
+}
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
     const char *wrong = frictional_parameters(p, with_eos);
@@ -40,6 +56,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     constants[FRICTION] = (real)sin(p[3]);
     constants[DILATANCY] = (real)sin(p[4]);
     constants[TENSION] = (real)(p[3] > 0 ? fmin(p[6], p[2] / tan(p[3])) : p[6]);
+    constants[STIFFENING] = (real)stiffening(bulk_modulus(p[0], p[1]), shear_modulus(p[0], p[1]), sin(p[3]), sin(p[4]));
     return NULL;
 }
 
@@ -249,8 +266,9 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
             work = lanes_select(p.plastic, (real)0.5 * work, zero);
         }
         store(dim, points, i, &p, tau, work);
-        // Along an axis of stress: rho0 c^2 = K + 4/3 mu - t.
+        // Along an axis of stress: rho0 c^2 = K + 4/3 mu - t, and what flow adds.
         lanes pressed = lanes_max(zero, -lanes_min(lanes_min(p.tau[0], p.tau[1]), p.tau[2]));
+        pressed += lanes_select(p.plastic, lanes_set(k[STIFFENING]), zero);
         note_speed(&record, k[J2_INVERSE_DENSITY] * (k[BULK] + (real)(4.0 / 3) * k[J2_MU] + pressed));
     }
     return update_end(&record, points, NULL);

@@ -195,6 +195,11 @@ typedef struct j2_flow {
     lanes delta, q;
 } j2_flow;
 
+// The deviator's part of rho0 c^2 along n, 4/3 mu m - s_nn / 3, at most: |s_nn| <= 2/3 q.
+BRUNT_INLINE lanes j2_shear_stiffness(const real *k, const j2_point *p) {
+    return (real)(4.0 / 3) * k[J2_MU] * p->m + (real)(2.0 / 9) * p->q;
+}
+
 // Writes stress and state. Returns the plastic work of the step: the trapezoid of stress over plastic strain, as
 // everywhere (material.h).
 BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_material_points *points, int32_t i, const j2_point *p,
@@ -211,10 +216,9 @@ BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_material_points 
     lanes_store(plastic_work, lanes_load(plastic_work) + work);
     if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
     if (points->strain_increment) lanes_store(points->strain_increment + i, flow.delta);
-    // Along n: rho0 c^2 = kappa (J^2 + 1)/2 + 4/3 mu m - s_nn / 3, and |s_nn| <= 2/3 q.
+    // The volume's: kappa (J^2 + 1)/2.
     lanes volumetric = k[J2_KAPPA] * (1 + p->volume_change * (1 + (real)0.5 * p->volume_change));
-    lanes shear = (real)(4.0 / 3) * k[J2_MU] * p->m + (real)(2.0 / 9) * p->q;
-    note_speed(record, k[J2_INVERSE_DENSITY] * (volumetric + shear));
+    note_speed(record, k[J2_INVERSE_DENSITY] * (volumetric + j2_shear_stiffness(k, p)));
     return work;
 }
 
