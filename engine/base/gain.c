@@ -1,6 +1,7 @@
 #include "base/gain.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/error.h"
 
@@ -91,6 +92,9 @@ void brunt_gain_end_step(brunt_gain *gain, double now) {
     if (s->known) {
         add_window(s);
         decide(s, now, sure);
+        // When they are tried together again, phases begin anew: what was learnt of them, they are not all to answer
+        // for.
+        if (!s->together && !s->trial) memset(gain->sizes, 0, sizeof gain->sizes);
         return;
     }
     s->known = s->together = true;
