@@ -12,7 +12,7 @@ int cmd_keys(int argc, char **argv) {
     } else if (!brunt_scene_keys(arguments.operand, stdout)) {
         fprintf(stderr, "brunt: there is no section '%s'; there are:", arguments.operand);
         for (int s = 0; s < brunt_scene_section_count; s++) fprintf(stderr, " %s", brunt_scene_sections[s].name);
-        fputs(" presets study, and the names of models", stderr);
+        fputs(" history presets study, and the names of models", stderr);
         fputc('\n', stderr);
         return BRUNT_BAD_USAGE;
     }

@@ -15,6 +15,7 @@
 #include "io/output/parts.h"
 #include "io/output/positions.h"
 #include "io/scene/crowd.h"
+#include "io/scene/history_columns.h"
 
 // ---------------------------------------------------------------------------------------------------- columns
 
@@ -27,6 +28,8 @@ static void add(brunt_history *h, const char *name, const char *unit, double val
         }
         column *c = &h->columns[h->column_count++];
         memset(c, 0, sizeof *c);
+        const history_column *means = brunt_column_meaning(name);
+        if (!means || (means->unit && !strstr(means->unit, unit))) h->unknown = h->column_count;
         snprintf(c->name, sizeof c->name, "%s", name);
         snprintf(c->unit, sizeof c->unit, "%s", unit);
         return;
@@ -357,6 +360,17 @@ static void find_members(brunt_history *h, const brunt_world *world, const brunt
         if (!i || h->members[i] != h->members[i - 1]) h->members[h->member_count++] = h->members[i];
 }
 
+static int name_columns(brunt_history *h, brunt_world *world, brunt_error *error) {
+    h->declaring = true;
+    traverse(h, world);
+    h->declaring = false;
+    if (h->unknown)
+        return brunt_fail(error, BRUNT_FAILED, "column '%s' of the history is not in the table of columns, or its unit",
+                          h->columns[h->unknown - 1].name);
+    h->out_of_memory |= brunt_names_sort(&h->names, h->columns[0].name, sizeof *h->columns, h->column_count, NULL) != 0;
+    return h->out_of_memory ? brunt_fail(error, BRUNT_FAILED, "out of memory") : BRUNT_OK;
+}
+
 brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene, brunt_error *error) {
     brunt_history *h = brunt_alloc(sizeof *h);
     if (h) h->probes = brunt_alloc(sizeof *h->probes * (size_t)scene->output.probe_count);
@@ -368,28 +382,15 @@ brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene
         return NULL;
     }
     snprintf(h->title, sizeof h->title, "%s", scene->title);
-    for (int32_t p = 0; p < scene->output.probe_count; p++) {
-        if (find_probe(world, &scene->output.probes[p], &h->probes[p], error)) {
-            brunt_history_destroy(h);
-            return NULL;
-        }
-        h->probe_count++;
-    }
+    int status = BRUNT_OK;
+    for (; h->probe_count < scene->output.probe_count && !status; h->probe_count++)
+        status = find_probe(world, &scene->output.probes[h->probe_count], &h->probes[h->probe_count], error);
     find_members(h, world, scene);
-    if (brunt_history_find_forces(h, world, scene, error)) {
-        brunt_history_destroy(h);
-        return NULL;
-    }
-    h->declaring = true;
-    traverse(h, world);
-    h->declaring = false;
-    h->out_of_memory |= brunt_names_sort(&h->names, h->columns[0].name, sizeof *h->columns, h->column_count, NULL) != 0;
-    if (h->out_of_memory) {
-        brunt_history_destroy(h);
-        brunt_fail(error, BRUNT_FAILED, "out of memory");
-        return NULL;
-    }
-    return h;
+    if (!status) status = brunt_history_find_forces(h, world, scene, error);
+    if (!status) status = name_columns(h, world, error);
+    if (!status) return h;
+    brunt_history_destroy(h);
+    return NULL;
 }
 
 // What was read back is no longer all.

@@ -43,6 +43,7 @@ struct brunt_history {
     brunt_names names; // of the columns, once they are all there
     bool declaring;    // the first traversal names the columns, later ones fill them
     bool out_of_memory;
+    int32_t unknown; // the last column that no table explains, and 1; 0: none
     int64_t rows;
     uint64_t hash; // of all lines but their probes, which may change from leg to leg
     double *lines; // one after the other, as long as they go to no file

@@ -1,4 +1,5 @@
 // The reference of all keys, made from the table that parses them.
+#include "io/scene/history_columns.h"
 #include "io/scene/scene_reader.h"
 
 #include <ctype.h>
@@ -194,6 +195,22 @@ static void write_presets(FILE *out) {
     }
 }
 
+static void write_columns(FILE *out) {
+    fputs("\nhistory: columns of history.csv, which measures ask for by name (measures.NAME.history)\n"
+          "* stands for a name, _x for _x, _y and _z. Columns: name, unit, where there is one (always, if nothing is "
+          "said), meaning.\n",
+          out);
+    for (int i = 0; i < brunt_column_rows; i++) {
+        const history_column *c = &brunt_column_table[i];
+        char name[64], doc[1024];
+        snprintf(name, sizeof name, "%s", c->name);
+        if (strchr(name, '?')) *strchr(name, '?') = 'x';
+        snprintf(doc, sizeof doc, c->of ? "%s [%s]" : "%s", c->doc, c->of);
+        fprintf(out, "%*s%-*s %-8s ", INDENT, "", PATH_WIDTH - 1, name, c->unit ? c->unit : "");
+        write_wrapped(out, doc, INDENT + PATH_WIDTH + 9);
+    }
+}
+
 static bool in_section(const scene_section *section, const scene_key *row) {
     size_t top = strcspn(row->path, ".[");
     for (const char *p = section->prefix; *p;) {
@@ -248,6 +265,7 @@ bool brunt_scene_keys(const char *section, FILE *out) {
         found = true;
         write_section(out, s);
     }
+    if (strcmp(section ? section : "history", "history") == 0) write_columns(out), found = true;
     if (strcmp(section ? section : "presets", "presets") == 0) write_presets(out), found = true;
     if (found) return true;
     const brunt_model *model = brunt_find_strength(section);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "io/output/positions.h"
 #include "base/real.h"
+#include "io/scene/history_columns.h"
 
 static brunt_scene scene;
 static brunt_world *world;
@@ -123,6 +124,24 @@ START_TEST(columns_hold_what_the_world_says) {
     ck_assert_str_eq(unit("contact.left-right.impulse_x"), "N s");
     ck_assert_str_eq(unit("wall.floor.force_y"), "N");
     ck_assert_ptr_null(brunt_history_column(history, "energy.none"));
+}
+END_TEST
+
+// One row each, the one that says most of it first in none: whole names, with names in them that have dots.
+START_TEST(columns_have_a_meaning) {
+    for (int i = 0; i < brunt_column_rows; i++) {
+        const history_column *row = &brunt_column_table[i];
+        ck_assert_ptr_nonnull(row->doc);
+        ck_assert_int_gt((int)strlen(row->doc), 3);
+        ck_assert_ptr_eq(brunt_column_meaning(row->name[strcspn(row->name, "*?")] ? "time" : row->name),
+                         row->name[strcspn(row->name, "*?")] ? brunt_column_table : row);
+    }
+    ck_assert_str_eq(brunt_column_meaning("body.grains.17.position_y")->name, "body.*.position_?");
+    ck_assert_str_eq(brunt_column_meaning("contact.a-b.force")->name, "contact.*.force");
+    ck_assert_str_eq(brunt_column_meaning("contact.a-b.force_z")->name, "contact.*.force_?");
+    ck_assert_ptr_null(brunt_column_meaning("body.ball.position_w"));
+    ck_assert_ptr_null(brunt_column_meaning("energy.kinetics"));
+    ck_assert_ptr_null(brunt_column_meaning("energy.kineti"));
 }
 END_TEST
 
@@ -719,6 +738,7 @@ int main(void) {
     TCase *lines = tcase_create("lines");
     tcase_add_checked_fixture(lines, set_up, tear_down);
     tcase_add_test(lines, columns_hold_what_the_world_says);
+    tcase_add_test(lines, columns_have_a_meaning);
     tcase_add_test(lines, forces_are_means_over_the_interval);
     tcase_add_loop_test(lines, forces_are_means_over_their_window, 0, 4);
     tcase_add_loop_test(lines, bars_have_the_force_of_the_wave, 0, 12);

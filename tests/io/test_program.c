@@ -233,6 +233,8 @@ START_TEST(check_and_keys_explain) {
     ck_assert(!exists("out"));
     expect("keys", 0, "bodies");
     expect("keys grid", 0, "cell");
+    expect("keys history", 0, "body.*.position_x                  m        centre of mass");
+    expect("keys", 0, "energy.contact_held");
     expect("keys --schema", 0, "$schema");
     json_error_t error;
     output = output_text();
