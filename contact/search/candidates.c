@@ -248,28 +248,58 @@ static bool all_met(const brunt_contact_surface *s, const int32_t *face, int32_t
     return height > 1e-9 * s->mean_edge && least > SAME_SLOPE + 1e-9;
 }
 
-// Adds a facet of a membrane, when the place is right above it and what is met is another slope.
-static void add_slope(const brunt_contact_surface *s, double range, const search_query *l, int32_t face,
-                      candidate_list *out) {
+// Facets that a place is right above, so many, the nearest first: of those of one slope one carries, and which of them
+// is not to hang on the order in which they are looked at.
+enum { MAX_BEARING = 12 };
+typedef struct bearing {
+    struct bearing_facet {
+        brunt_closest at;
+        int32_t face;
+        double side; // -1: it is turned over
+    } of[MAX_BEARING];
+    int32_t count;
+} bearing;
+
+static void add_bearing(bearing *list, int32_t face, const brunt_closest *at, double side) {
+    const bool full = list->count == MAX_BEARING;
+    if (full && !(at->square < list->of[MAX_BEARING - 1].at.square)) return;
+    int32_t k = full ? MAX_BEARING - 1 : list->count++;
+    for (; k > 0 && at->square < list->of[k - 1].at.square; k--) list->of[k] = list->of[k - 1];
+    list->of[k] = (struct bearing_facet){*at, face, side};
+}
+
+static void add_candidate(const brunt_contact_surface *s, const struct bearing_facet *b, candidate_list *out) {
+    facet_candidate *h = &out->candidate[out->count++];
+    *h = (facet_candidate){
+        .face = b->face, .triangle = b->at.triangle, .body = s->face_body[b->face], .gap = dot(b->at.normal, b->at.d)};
+    memcpy(h->n, b->at.normal, sizeof h->n);
+}
+
+// Whether what is met of a membrane is another slope than that of a facet, of this side.
+static bool is_other_slope(const brunt_contact_surface *s, int32_t face, double side, const candidate_list *out) {
+    bool met = false, same = false;
+    for (int32_t k = 0; k < out->count; k++) {
+        if (out->candidate[k].body != s->face_body[face]) continue;
+        met = true;
+        same = same || side * dot(out->candidate[k].n, s->face_normal[face]) > SAME_SLOPE;
+    }
+    return met && !same;
+}
+
+// Notes a facet of a membrane, when the place is right above it and what is met is another slope.
+static void note_slope(const brunt_contact_surface *s, double range, const search_query *l, int32_t face,
+                       const candidate_list *out, bearing *list) {
     const int32_t body = s->face_body[face];
     if (!is_membrane(s, body) || !near_box(s->face_box[face], l->x, range)) return;
     const double *normal = s->face_normal[face], *centre = s->face_centre[face];
     double towards = 0;
     for (int a = 0; a < 3; a++) towards += normal[a] * (l->normal ? -l->normal[a] : l->x[a] - centre[a]);
     if (l->normal && fabs(towards) <= OPPOSED) return;
-    bool met = false, same = false;
-    for (int32_t k = 0; k < out->count; k++) {
-        if (out->candidate[k].body != body) continue;
-        met = true;
-        same = same || (towards < 0 ? -1 : 1) * dot(out->candidate[k].n, normal) > SAME_SLOPE;
-    }
-    if (!met || same || (body == l->body && in_patch(l, face)) || out->count == BRUNT_MAX_CANDIDATES) return;
+    const double side = towards < 0 ? -1 : 1;
+    if (!is_other_slope(s, face, side, out) || (body == l->body && in_patch(l, face))) return;
     brunt_closest at = brunt_closest_on_face(s, face, l->x);
     if (towards < 0) turn_over(s, &face, &at);
-    if (!at.inside || at.square > range * range || !on_side(l, &at)) return;
-    facet_candidate *h = &out->candidate[out->count++];
-    *h = (facet_candidate){.face = face, .triangle = at.triangle, .body = body, .gap = dot(at.normal, at.d)};
-    memcpy(h->n, at.normal, sizeof h->n);
+    if (at.inside && !(at.square > range * range) && on_side(l, &at)) add_bearing(list, face, &at, side);
 }
 
 // Facets of membranes that the place is right above, beside the nearest one and on another slope: in a valley all of
@@ -281,11 +311,30 @@ static void add_slopes(const brunt_contact_surface *s, const brunt_node_to_facet
     bool any = false;
     for (int32_t k = 0; k < out->count; k++) any = any || is_membrane(s, out->candidate[k].body);
     if (!any || (l->bounds && all_met(s, f->cells.face + begin, end - begin, l->x, out->candidate[0].n))) return;
-    for (int32_t q = begin; q < end; q++) add_slope(s, f->bodies.range, l, f->cells.face[q], out);
+    bearing list;
+    list.count = 0;
+    for (int32_t q = begin; q < end; q++) note_slope(s, f->bodies.range, l, f->cells.face[q], out, &list);
+    for (int32_t k = 0; k < list.count && out->count < BRUNT_MAX_CANDIDATES; k++) {
+        const struct bearing_facet *b = &list.of[k];
+        if (k == 0 || is_other_slope(s, brunt_candidates_front(s, b->face), b->side, out)) add_candidate(s, b, out);
+    }
 }
 
 static bool is_eroded(const brunt_contact_surface *s, int32_t body) {
     return s->renewal.eroded && s->renewal.eroded[body];
+}
+
+// Whether a facet is of a slope that is met, or beyond it.
+static bool is_borne(const brunt_contact_surface *s, const search_query *l, int32_t face, const candidate_list *out) {
+    const double *centre = s->face_centre[face];
+    const double to[3] = {centre[0] - l->x[0], centre[1] - l->x[1], centre[2] - l->x[2]};
+    bool known = false;
+    for (int32_t k = 0; k < out->count; k++) {
+        const facet_candidate *h = &out->candidate[k];
+        known = known || (h->body == s->face_body[face] && (dot(h->n, s->face_normal[face]) > SAME_SLOPE ||
+                                                            dot(h->n, to) + h->gap < VALLEY * s->mean_edge));
+    }
+    return known;
 }
 
 // Where elements have left, surfaces have steps, pits and spikes of the size of an element, and edges cut into edges: a
@@ -295,30 +344,18 @@ static bool is_eroded(const brunt_contact_surface *s, int32_t body) {
 static void add_eroded(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
                        candidate_list *out) {
     const brunt_contact_surface *s = m->surface;
-    const double edge = s->mean_edge;
+    bearing list;
+    list.count = 0;
     for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
         const int32_t face = f->cells.face[q], body = s->face_body[face];
         if (body == l->body || is_membrane(s, body) || !(is_eroded(s, body) || is_eroded(s, l->body))) continue;
-        if (out->count == BRUNT_MAX_CANDIDATES ||
-            !near_box(s->face_box[face], l->x, fmin(f->bodies.range, f->bodies.travel)))
-            continue;
-        if (!is_among(body, l->touch, l->touches)) continue;
-        const double *centre = s->face_centre[face];
-        const double to[3] = {centre[0] - l->x[0], centre[1] - l->x[1], centre[2] - l->x[2]};
-        bool known = false;
-        for (int32_t k = 0; k < out->count; k++) {
-            const facet_candidate *h = &out->candidate[k];
-            known = known || (h->body == body &&
-                              (dot(h->n, s->face_normal[face]) > SAME_SLOPE || dot(h->n, to) + h->gap < VALLEY * edge));
-        }
-        if (known) continue;
+        if (!near_box(s->face_box[face], l->x, fmin(f->bodies.range, f->bodies.travel))) continue;
+        if (!is_among(body, l->touch, l->touches) || is_borne(s, l, face, out)) continue;
         const brunt_closest at = brunt_closest_on_face(s, face, l->x);
-        const double height = dot(at.normal, at.d);
-        if (!at.inside || height < -BEHIND * edge) continue;
-        facet_candidate *h = &out->candidate[out->count++];
-        *h = (facet_candidate){.face = face, .triangle = at.triangle, .body = body, .gap = height};
-        memcpy(h->n, at.normal, sizeof h->n);
+        if (at.inside && !(dot(at.normal, at.d) < -BEHIND * s->mean_edge)) add_bearing(&list, face, &at, 1);
     }
+    for (int32_t k = 0; k < list.count && out->count < BRUNT_MAX_CANDIDATES; k++)
+        if (k == 0 || !is_borne(s, l, list.of[k].face, out)) add_candidate(s, &list.of[k], out);
 }
 
 // Whether a place is clearly before the nearest facet of a body that is not the nearest of all. A membrane has no
