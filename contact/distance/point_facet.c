@@ -192,9 +192,10 @@ static brunt_closest on_rim(const brunt_contact_surface *s, int32_t face, int fi
         triangle_of(s, face, t, p);
         unit_normal(p, n);
         const double normal_distance = in[t] ? INFINITY : fabs(dot(n, d));
+        const bool nearer = best.inside && in[t] && squares[t] < best.square; // of two that it is over
         count++, best.triangles |= 1 << t;
         for (int c = 0; c < 3; c++) best.normal[c] += n[c], best.d[c] += d[c];
-        if (normal_distance > most)
+        if (nearer || normal_distance > most)
             most = normal_distance, best.square = squares[t], best.inside = in[t], best.triangle = t;
     }
     if (count == 1) best.triangles = 0;

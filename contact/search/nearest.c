@@ -4,15 +4,21 @@
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
 static const double STRAIGHT = 0.01;  // [rad] within it of their mean normal, ways to edges and corners are along it
 
+// Of two that tie, the one that the place is right above, and of two of those the nearer one, be it by less than what
+// ties: their numbers settle only what rounding does.
+static bool is_more_opposed(const tied *a, const tied *b) {
+    if (a->at.inside != b->at.inside) return a->at.inside;
+    const double of_a = a->at.inside ? -a->at.square : fabs(dot(a->at.normal, a->at.d)),
+                 of_b = b->at.inside ? -b->at.square : fabs(dot(b->at.normal, b->at.d));
+    return of_a > of_b || (of_a == of_b && a->face < b->face);
+}
+
 static const tied *most_opposed(const nearest *best) {
     const tied *chosen = NULL;
-    double greatest = -1;
     for (int32_t k = 0; k < best->count; k++) {
-        if (best->tied[k].at.square > best->root * best->root) continue;
-        double normal_distance =
-            best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
-        if (normal_distance > greatest || (normal_distance == greatest && best->tied[k].face < chosen->face))
-            greatest = normal_distance, chosen = &best->tied[k];
+        const tied *one = &best->tied[k];
+        if (one->at.square > best->root * best->root) continue;
+        if (!chosen || is_more_opposed(one, chosen)) chosen = one;
     }
     return chosen;
 }

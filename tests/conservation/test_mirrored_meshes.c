@@ -21,8 +21,9 @@ static const meeting meetings[] = {
     {"tetrahedra erode hexahedra", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 13},
     {"hexahedra erode each other", {BRUNT_HEX8, BRUNT_HEX8}, 0.2, 0.3, false, 120, 7},
     {"debris of tetrahedra", {BRUNT_TET4, BRUNT_TET4}, 0.3, 0.3, true, 120, 19},
-    {"a fold of quadrilaterals", {BRUNT_MEMBRANE_QUAD4, BRUNT_TET4}, INFINITY, 0.3, false, 240, 7},
+    {"a fold of quadrilaterals", {BRUNT_MEMBRANE_QUAD4, BRUNT_TET4}, INFINITY, 0.3, false, 240, 5},
     {"a fold of triangles", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, INFINITY, 0, false, 240, 17},
+    {"another of triangles", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, INFINITY, 0, false, 240, 5},
 };
 enum { MEETINGS = sizeof meetings / sizeof *meetings };
 
