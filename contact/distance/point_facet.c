@@ -87,7 +87,7 @@ static inline four_triangles triangles_of(const brunt_contact_surface *s, int32_
     return f;
 }
 
-// The one that x is over; `between`: whether it is on the way to another one.
+// The one that x is over; `between`: whether it is on the way to another one, or over two, of one that is folded over.
 static inline int sector(const four_triangles *f, const double x[3], bool *between) {
     const double near = NEAR_SPOKE * f->area;
     quad r[3], e[3], c[3], normal[3];
@@ -99,9 +99,11 @@ static inline int sector(const four_triangles *f, const double x[3], bool *betwe
     const quad turn = quad_dot(c, normal);
     *between = false;
     for (int t = 0; t < 4; t++) *between = *between || fabs(turn[t]) < near;
+    int over = 0, count = 0;
     for (int t = 0; t < 4; t++)
-        if (turn[t] >= 0 && turn[(t + 1) % 4] <= 0) return t;
-    return 0;
+        if (turn[t] >= 0 && turn[(t + 1) % 4] <= 0) over = count++ ? over : t;
+    *between = *between || count > 1;
+    return over;
 }
 
 // As on_triangle, of all four.
@@ -131,7 +133,7 @@ static inline void on_triangles(const four_triangles *f, const double x[3], quad
 }
 
 // Which of a quadrilateral's four triangles x is clearly over, as `sector` says where rounding does not matter; 4:
-// none.
+// none, or two.
 static inline int clear_sector(const brunt_contact_surface *s, int32_t face, const double x[3]) {
     const double near = (1 + 1e-6) * NEAR_SPOKE * s->face_area[face], *centre = s->face_centre[face];
     double r[3], m[3], turn[5];
@@ -144,9 +146,10 @@ static inline int clear_sector(const brunt_contact_surface *s, int32_t face, con
         clear = clear && fabs(turn[t]) > near;
     }
     turn[4] = turn[0];
-    int t = 0;
-    while (t < 4 && !(turn[t] > 0 && turn[t + 1] < 0)) t++;
-    return clear ? t : 4;
+    int over = 4, count = 0;
+    for (int t = 0; t < 4; t++)
+        if (turn[t] > 0 && turn[t + 1] < 0) over = t, count++;
+    return clear && count == 1 ? over : 4;
 }
 
 // The nearest point of a quadrilateral where it is inside the triangle that x is clearly over. Whether it is.

@@ -57,7 +57,12 @@ BRUNT_INLINE void find_sectors(const doubles x[3], lane_facets *f) {
         clear &= size_of(turn[t]) > near;
     }
     turn[4] = turn[0];
-    for (int t = 0; t < 4; t++) f->over[t] = clear & (turn[t] > zero) & (turn[t + 1] < zero), clear &= ~f->over[t];
+    doubles_mask any = zero != zero, two = any;
+    for (int t = 0; t < 4; t++) {
+        f->over[t] = clear & (turn[t] > zero) & (turn[t + 1] < zero);
+        two |= any & f->over[t], any |= f->over[t];
+    }
+    for (int t = 0; t < 4; t++) f->over[t] &= ~two;
 }
 
 // Of the four the one that counts.

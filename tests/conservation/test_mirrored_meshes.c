@@ -19,6 +19,7 @@ typedef struct meeting {
 
 static const meeting meetings[] = {
     {"tetrahedra erode hexahedra", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 13},
+    {"hexahedra folded over themselves", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 6},
     {"hexahedra erode each other", {BRUNT_HEX8, BRUNT_HEX8}, 0.2, 0.3, false, 120, 7},
     {"debris of tetrahedra", {BRUNT_TET4, BRUNT_TET4}, 0.3, 0.3, true, 120, 19},
     {"a fold of quadrilaterals", {BRUNT_MEMBRANE_QUAD4, BRUNT_TET4}, INFINITY, 0.3, false, 240, 5},
