@@ -2,6 +2,7 @@
 //
 // Blocks keep their slots, elements never change blocks. A gap is filled by the block's last element, which keeps the
 // loops of the kernels without branches, and their cost that of the elements there still are.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -220,7 +221,7 @@ int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in, brunt_error 
             }
         }
         body->element_count += block->count;
-        body->report[b] = (brunt_fem_report){.bad = -1};
+        body->report[b] = (brunt_fem_report){.bad = -1, .stable_step = INFINITY}; // of one that is empty it stays
     }
     count_bonds(body);
     return BRUNT_OK;

@@ -3,6 +3,7 @@
 #include "tests/support/def_world.h"
 
 #include "geometry/element_traits.h"
+#include "world/world.h"
 
 static const struct kind {
     brunt_element_kind kind;
@@ -51,8 +52,36 @@ START_TEST(what_may_erode_goes_on_to_the_bit) {
 }
 END_TEST
 
+// A block of elements may be left without any: it has no stable step of its own.
+START_TEST(empty_blocks_do_not_stop_a_restart) {
+    brunt_world_def def = def_begin(3, 0);
+    def_material(&def, "neo-hookean", 1000, 1e7, 0.3);
+    brunt_body_def *b = def_box(&def, "block", XYZ(0, 0, 0), XYZ(1, 1, 1));
+    b->method = BRUNT_FEM, b->element = BRUNT_TET4, b->size = 0.15;
+    b->wave_velocity[0] = 3, b->wave_vector[1] = 5;
+    b->erosion.inverted = true;
+    brunt_world *one = world_from(&def), *other = world_take(&def);
+    brunt_fem_body *fem = &one->bodies.fem[0];
+    ck_assert_int_gt(fem->block_count, 2);
+    world_steps(one, 2);
+    for (int32_t s = 0; s < fem->block[0].count; s++) fem->mark[s] = BRUNT_MARK_FAILED, fem->report[0].marked++;
+    brunt_error error = {0};
+    ck_assert_int_eq(brunt_erode_marked(one, brunt_world_dt(one), &error), BRUNT_OK);
+    ck_assert_int_eq(fem->block[0].count, 0);
+    world_copy_state(one, other);
+    for (int s = 0; s < 5; s++) {
+        world_steps(one, 1), world_steps(other, 1);
+        ck_assert(brunt_world_hash(one) == brunt_world_hash(other));
+        ck_assert_double_eq(brunt_world_dt(one), brunt_world_dt(other));
+    }
+    brunt_world_destroy(one);
+    brunt_world_destroy(other);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("restarts");
     ADD_LOOP(what_may_erode_goes_on_to_the_bit, 2 * KINDS);
+    ADD_LOOP(empty_blocks_do_not_stop_a_restart, 1);
     return suite_main(suite);
 }
