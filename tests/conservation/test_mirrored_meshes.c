@@ -1,5 +1,6 @@
 // Given meshes, none of whose facets is level with another, do the same in a mirror, with axes that change places, and
-// with bodies in the other order: blocks that erode each other, and folded membranes that a block closes.
+// with bodies in the other order: blocks that erode each other, folded membranes that a block closes, or tears, and
+// blocks in implicit steps.
 //
 // Steps are given: stable ones go by the fastest wave of a tile of elements, and which are in a tile hangs on their
 // numbers.
@@ -15,16 +16,20 @@ typedef struct meeting {
     double strain, friction; // at which elements leave; of the contact
     bool keep;
     int steps, seed; // of the shifts of the nodes
+    bool implicit;
 } meeting;
 
 static const meeting meetings[] = {
-    {"tetrahedra erode hexahedra", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 13},
-    {"hexahedra folded over themselves", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 6},
-    {"hexahedra erode each other", {BRUNT_HEX8, BRUNT_HEX8}, 0.2, 0.3, false, 120, 7},
-    {"debris of tetrahedra", {BRUNT_TET4, BRUNT_TET4}, 0.3, 0.3, true, 120, 19},
-    {"a fold of quadrilaterals", {BRUNT_MEMBRANE_QUAD4, BRUNT_TET4}, INFINITY, 0.3, false, 240, 5},
-    {"a fold of triangles", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, INFINITY, 0, false, 240, 17},
-    {"another of triangles", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, INFINITY, 0, false, 240, 5},
+    {"tetrahedra erode hexahedra", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 13, false},
+    {"hexahedra folded over themselves", {BRUNT_TET4, BRUNT_HEX8}, 0.3, 0, false, 120, 6, false},
+    {"hexahedra erode each other", {BRUNT_HEX8, BRUNT_HEX8}, 0.2, 0.3, false, 120, 7, false},
+    {"debris of tetrahedra", {BRUNT_TET4, BRUNT_TET4}, 0.3, 0.3, true, 120, 19, false},
+    {"a fold of quadrilaterals", {BRUNT_MEMBRANE_QUAD4, BRUNT_TET4}, INFINITY, 0.3, false, 240, 5, false},
+    {"a fold of triangles", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, INFINITY, 0, false, 240, 17, false},
+    {"another of triangles", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, INFINITY, 0, false, 240, 5, false},
+    {"a fold that tears", {BRUNT_MEMBRANE_TRI3, BRUNT_HEX8}, 0.05, 0.3, false, 240, 3, false},
+    {"debris of a fold", {BRUNT_MEMBRANE_QUAD4, BRUNT_TET4}, 0.05, 0.3, true, 240, 4, false},
+    {"blocks in implicit steps", {BRUNT_TET4, BRUNT_HEX8}, INFINITY, 0.3, false, 16, 2, true},
 };
 enum { MEETINGS = sizeof meetings / sizeof *meetings };
 
@@ -93,21 +98,26 @@ static brunt_body_def *def_mesh(brunt_world_def *def, const char *name, const me
     if (!sheet) reflect(r, fold ? down : fast[k], v);
     def_velocity(b, v[0], v[1], v[2]);
     reflect_mesh(&b->mesh, r);
-    b->erosion.strain = m->strain, b->erosion.keep = m->keep, b->erosion.inverted = m->strain < INFINITY;
+    b->erosion.strain = fold && !sheet ? INFINITY : m->strain, b->erosion.keep = m->keep,
+    b->erosion.inverted = b->erosion.strain < INFINITY;
     return b;
 }
 
 static brunt_world *meet(const meeting *m, const reflection *r) {
     brunt_world_def def = def_begin(3, 0);
-    const bool fold = m->strain == INFINITY;
+    const bool fold = m->kind[0] >= BRUNT_MEMBRANE_QUAD4;
     def_material(&def, "neo-hookean", 1000, fold ? 2e6 : 1e7, 0.3);
     def.contact.method = BRUNT_CONTACT_AUGURY, def.contact.friction = m->friction, def.step = fold ? 1.5e-4 : 1e-4;
+    if (m->implicit) {
+        def.scheme = BRUNT_IMPLICIT, def.contact.method = BRUNT_CONTACT_BARRIER, def.contact.distance = 0.01;
+        def.newton.tolerance = 1e-10, def.step = fold ? 2.5e-3 : 5e-4;
+    }
     random_state = m->seed;
     for (int k = 0; k < 2; k++) def_mesh(&def, k == r->swap ? "a" : "b", m, k, r);
     if (fold) {
         def.contact.pairs = brunt_alloc(sizeof *def.contact.pairs), def.contact.pair_count = 1;
         brunt_pair_def *p = &def.contact.pairs[0];
-        *p = (brunt_pair_def){.method = BRUNT_CONTACT_AUGURY, .friction = m->friction};
+        *p = (brunt_pair_def){.method = def.contact.method, .friction = m->friction};
         snprintf(p->a, sizeof p->a, "%s", r->swap ? "b" : "a"), snprintf(p->b, sizeof p->b, "%s", p->a);
     }
     return world_take(&def);
@@ -131,7 +141,7 @@ START_TEST(meshes_do_as_in_a_mirror) {
     const int64_t left = gone[0].elements + gone[1].elements;
     printf("  %s: %lld elements have left, contact %.1e of the energy\n", m->name, (long long)left, pressed / energy);
     ck_assert(left > 20 || m->strain == INFINITY);
-    ck_assert_double_gt(pressed, 0.01 * energy); // they have met
+    ck_assert_double_gt(pressed, (m->implicit ? 2e-3 : 0.01) * energy); // they have met; barriers are soft
     brunt_world_destroy(world);
     for (int i = 0; i < REFLECTIONS; i++) {
         double most = 0;
