@@ -125,6 +125,7 @@ static brunt_world *meet(const meeting *m, const reflection *r) {
 
 START_TEST(meshes_do_as_in_a_mirror) {
     const meeting *m = &meetings[_i];
+    if (m->implicit && sizeof(real) != sizeof(double)) return; // they want double precision
     outcome as[LOOKS];
     brunt_world *world = meet(m, &plain);
     const double energy = world_energy(world).initial;
@@ -153,7 +154,7 @@ START_TEST(meshes_do_as_in_a_mirror) {
         }
         brunt_world_destroy(world);
         printf("    %s: differs by %.1e\n", reflections[i].name, most);
-        ck_assert_double_le(most, sizeof(real) == sizeof(double) ? 1e-10 : 2e-2);
+        ck_assert_double_le(most, sizeof(real) == sizeof(double) ? 1e-10 : 1e-3);
     }
 }
 END_TEST
