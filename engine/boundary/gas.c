@@ -1,8 +1,9 @@
 // Ideal gas of one pressure and temperature in the volume that a group's faces enclose (the control volume of airbags:
 // Wang and Nefske, SAE paper 880654 (1988)): p = (gamma - 1) E / V, dE = -p dV + inflow.
 //
-// The volume is that of the cone of the faces with the origin, 1/3 int x . n dA, which is the enclosed one when the
-// faces close, by themselves or with planes of symmetry through the origin. Its derivative by a node's place is
+// The volume is that of the cone of the faces with a point, 1/3 int (x - o) . n dA, which is the enclosed one when the
+// faces close, by themselves or with planes of symmetry through the origin, in which the point then lies. Otherwise it
+// is one of the faces' own, so that a volume far from the origin keeps its digits. Its derivative by a node's place is
 // int N_a n dA, by which the pressure acts: exact for bilinear faces, so that pressure on a closed surface has neither
 // resultant nor torque. Between two steps the gas expands at constant entropy.
 #include <math.h>
@@ -17,9 +18,15 @@
 
 static int corners_of(const int32_t node[4]) { return node[3] < 0 ? 3 : 4; }
 
-static void places(const brunt_fem_body *fem, const int32_t node[4], double (*x)[3]) {
+// As seen from `from`.
+static void places(const brunt_fem_body *fem, const int32_t node[4], const double from[3], double (*x)[3]) {
     for (int c = 0; c < corners_of(node); c++)
-        for (int a = 0; a < 3; a++) x[c][a] = (double)brunt_fem_node(fem, node[c])[a];
+        for (int a = 0; a < 3; a++) x[c][a] = (double)brunt_fem_node(fem, node[c])[a] - from[a];
+}
+
+static void apex_of(const brunt_node_set *set, double apex[3]) {
+    for (int a = 0; a < 3; a++)
+        apex[a] = set->gas_halved[a] || !set->face_count ? 0 : (double)brunt_fem_node(set->fem, set->face[0][0])[a];
 }
 
 static double triple(const double a[3], const double b[3], const double c[3]) {
@@ -28,11 +35,12 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
 
 double brunt_gas_volume(const brunt_node_set *set) {
     const brunt_fem_body *fem = set->fem;
-    double volume = 0;
+    double volume = 0, apex[3];
+    apex_of(set, apex);
     for (int32_t f = 0; f < set->face_count; f++) {
         double x[4][3];
         const int n = corners_of(set->face[f]);
-        places(fem, set->face[f], x);
+        places(fem, set->face[f], apex, x);
         if (n == 3)
             volume += triple(x[0], x[1], x[2]) / 6;
         else // the mean of the two ways to cut a quadrilateral is its bilinear surface
@@ -52,18 +60,21 @@ static int by_nodes(const void *a, const void *b) {
     return p->low != q->low ? (p->low > q->low) - (p->low < q->low) : (p->high > q->high) - (p->high < q->high);
 }
 
-static bool on_plane_of_symmetry(const brunt_fem_body *fem, const edge *e) {
+// Whether it is on one; notes which.
+static bool on_plane_of_symmetry(brunt_node_set *set, const edge *e) {
+    const brunt_fem_body *fem = set->fem;
+    bool any = false;
     for (int a = 0; a < fem->dim; a++) {
         const double p = fabs((double)brunt_fem_node(fem, e->low)[a]),
                      q = fabs((double)brunt_fem_node(fem, e->high)[a]);
-        if (fmax(p, q) <= 1e-6 * (double)fem->mean_edge) return true;
+        if (fmax(p, q) <= 1e-6 * (double)fem->mean_edge) any = set->gas_halved[a] = true;
     }
-    return false;
+    return any;
 }
 
 // An edge that an odd number of the faces has, and that is on no plane of symmetry through the origin, if there is one
-// (`open`), and its middle.
-static int find_opening(const brunt_node_set *set, bool *open, double at[3], brunt_error *error) {
+// (`open`), and its middle. Notes the planes that close the faces.
+static int find_opening(brunt_node_set *set, bool *open, double at[3], brunt_error *error) {
     const brunt_fem_body *fem = set->fem;
     edge *edges;
     size_t count = 0;
@@ -79,7 +90,7 @@ static int find_opening(const brunt_node_set *set, bool *open, double at[3], bru
     *open = false;
     for (size_t i = 0, next; i < count && !*open; i = next) {
         for (next = i; next < count && !by_nodes(&edges[i], &edges[next]);) next++;
-        *open = (next - i) % 2 == 1 && !on_plane_of_symmetry(fem, &edges[i]);
+        *open = (next - i) % 2 == 1 && !on_plane_of_symmetry(set, &edges[i]);
         for (int a = 0; a < 3 && *open; a++)
             at[a] = 0.5 * (double)(brunt_fem_node(fem, edges[i].low)[a] + brunt_fem_node(fem, edges[i].high)[a]);
     }

@@ -28,6 +28,7 @@ typedef struct brunt_node_set {
     double *force;                             // node_count x 3 [N] of this step, for loads
     int32_t *place;                            // of each node of the body: its place in the group + 1; for loads
     double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
+    bool gas_halved[3];                        // its faces are closed by the plane of symmetry across this axis
     double *area;                              // node_count x 3: room for the stable step of gas; NULL of others
 } brunt_node_set;
 

@@ -229,6 +229,29 @@ START_TEST(volume_passes_zero) {
 }
 END_TEST
 
+// A volume is what it is wherever it lies: closed by itself, or but for one face by a plane of symmetry, and far along
+// the other axes.
+START_TEST(volume_hangs_on_no_origin) {
+    static const char *const faces[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+    static const double size[] = {0.4, 0.3, 0.2};
+    const double far = sizeof(real) == sizeof(double) ? 4096 : 4;
+    for (int open = -1; open < 6; open++) {
+        brunt_world_def def = box(BRUNT_MEMBRANE_QUAD4, OUTSIDE, 0);
+        brunt_body_def *body = &def.bodies[0];
+        body->method = BRUNT_MEMBRANE, body->thickness = 1e-3;
+        body->faces = brunt_alloc(6 * sizeof *body->faces);
+        double by[3] = {-far, far, 2 * far};
+        for (int f = 0; f < 6; f++)
+            if (f != open) snprintf(body->faces[body->face_count++], BRUNT_NAME_LENGTH, "%s", faces[f]);
+        if (open >= 0) by[open / 2] = open % 2 ? -size[open / 2] : 0;
+        body->place = brunt_placement_translate(brunt_placement_identity(), by);
+        brunt_world *world = world_take(&def);
+        ck_assert_double_eq_tol(gas_of(world).volume, 0.024, 0.024 * (far > 4 ? 1e-10 : 1e-4));
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
+
 START_TEST(goes_on_with_the_same_bits) {
     brunt_world_def def = box(BRUNT_HEX8, 3 * OUTSIDE, 500);
     def.bodies[0].damping = 10;
@@ -262,6 +285,7 @@ int main(void) {
     tcase_add_loop_test(all, any_damping_is_exact, 0, 2);
     tcase_add_loop_test(all, contact_bears_all_of_the_weight, 0, 2);
     tcase_add_test(all, volume_passes_zero);
+    tcase_add_test(all, volume_hangs_on_no_origin);
     tcase_add_test(all, goes_on_with_the_same_bits);
     suite_add_tcase(suite, all);
     return suite_main(suite);
