@@ -75,6 +75,23 @@ START_TEST(forces_are_the_slope_of_the_energy) {
 }
 END_TEST
 
+// A level element that is pressed to a hundredth has next to no forces without compression; one that was warped is no
+// surface any more, and is told to be inside out.
+START_TEST(pressed_flat_and_small) {
+    for (int warped = 0; warped < 2; warped++) {
+        random_state = 3;
+        brunt_mesh mesh = membrane_mesh(BRUNT_MEMBRANE_QUAD4, 1, 1, 1, 0, warped ? 0.3 : 0, true);
+        brunt_fem_body body = membrane_of(&mesh, (membrane_options){.tension_only = true});
+        for (int n = 0; n < 4; n++)
+            for (int i = 0; i < 3; i++) brunt_fem_node(&body, n)[i] *= (real)(i < 2 ? 0.01 : 0);
+        const brunt_fem_report report = forces(&body, 1e-3);
+        ck_assert_int_eq(report.bad, warped ? 0 : -1);
+        if (warped) ck_assert_ptr_nonnull(strstr(report.reason, "inside out"));
+        brunt_fem_free(&body);
+    }
+}
+END_TEST
+
 START_TEST(stable_step_is_a_bound) {
     if (sizeof(real) == 4) return;
     double least = INFINITY;
@@ -129,6 +146,7 @@ int main(void) {
     tcase_add_test(tcase, forces_stay_as_area_goes);
     tcase_add_test(tcase, forces_are_the_slope_of_the_energy);
     tcase_add_test(tcase, stable_step_is_a_bound);
+    tcase_add_test(tcase, pressed_flat_and_small);
     tcase_add_test(tcase, edges_that_pass_keep_their_energy);
     suite_add_tcase(suite, tcase);
     return suite_main(suite);
