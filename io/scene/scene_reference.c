@@ -197,8 +197,8 @@ static void write_presets(FILE *out) {
 
 static void write_columns(FILE *out) {
     fputs("\nhistory: columns of history.csv, which measures ask for by name (measures.NAME.history)\n"
-          "* stands for a name, _x for _x, _y and _z. Columns: name, unit, where there is one (always, if nothing is "
-          "said), meaning.\n",
+          "* stands for a name, _x for _x, _y and _z. Columns: name, unit, meaning [which scenes have it; default: "
+          "all].\n",
           out);
     for (int i = 0; i < brunt_column_rows; i++) {
         const history_column *c = &brunt_column_table[i];
