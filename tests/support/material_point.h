@@ -9,11 +9,6 @@
 #include "base/simd.h"
 #include "materials/material.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
 #define GPA 1e9
 #define MPA 1e6
 

@@ -13,13 +13,6 @@
 #include "tests/support/matrix.h"
 #include "tests/support/suite.h"
 
-// A tolerance for either precision of the engine.
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 // ---------------------------------------------------------------------------------------------------- typical
 // parameters
 

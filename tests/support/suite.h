@@ -16,6 +16,13 @@ enum { SANITIZED = 1 };
 enum { SANITIZED = 0 };
 #endif
 
+// A tolerance for either precision of the engine.
+#ifdef BRUNT_FLOAT
+#define TOLERANCE(in_double, in_float) (in_float)
+#else
+#define TOLERANCE(in_double, in_float) (in_double)
+#endif
+
 // Runs a suite; the exit code of its program: 1 when a test failed, or CK_RUN_CASE names none of it. That single
 // precision has nothing of a suite is no failure.
 static inline int suite_main(Suite *suite) {

@@ -7,12 +7,6 @@
 #include "base/simd.h"
 #include "materials/prepared.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 // TNT: Dobratz and Crawford, LLNL Explosives Handbook, UCRL-52997 (1985).
 static const double rho0 = 1630, A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, w = 0.30, E0 = 7.0e9, D = 6930;
 

@@ -7,12 +7,6 @@
 #include "materials/prepared.h"
 #include "tests/support/matrix.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 // ------------------------------------------------------------------------------------------ materials
 
 static void set(brunt_material_def *def, const char *key, double value) {

@@ -6,12 +6,6 @@
 #include "base/simd.h"
 #include "materials/prepared.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 // ------------------------------------------------------------------------------------------ points
 
 // One vector of points, all alike, of a fluid with its equation of state, as the engine has them.

@@ -11,11 +11,6 @@
 #include "materials/prepared.h"
 #include "tests/support/suite.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
 static const double epsilon = TOLERANCE(DBL_EPSILON, FLT_EPSILON);
 
 static const double young = 3e6, density = 1200;

@@ -6,12 +6,6 @@
 #include "base/simd.h"
 #include "materials/prepared.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 static brunt_material_def preset(const char *name) {
     brunt_error error = {0};
     brunt_material_def def;

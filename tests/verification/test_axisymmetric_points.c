@@ -5,12 +5,6 @@
 #include "contact/distance/particle_vicinity.h"
 #include "world/world.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 typedef struct choice {
     brunt_kernel kernel;
     brunt_transfer transfer;

@@ -3,12 +3,6 @@
 // vacuum or is pressed to a twentieth of its volume.
 #include "tests/support/def_world.h"
 
-#ifdef BRUNT_FLOAT
-#define TOLERANCE(in_double, in_float) (in_float)
-#else
-#define TOLERANCE(in_double, in_float) (in_double)
-#endif
-
 static void set(brunt_material_def *def, const char *key, double value, const char *text) {
     brunt_error error = {0};
     ck_assert_msg(brunt_material_set(def, key, value, text, &error) == BRUNT_OK, "%s", error.message);
