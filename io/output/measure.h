@@ -3,11 +3,13 @@
 
 #include "io/output/history.h"
 #include "io/scene/scene.h"
+#include "io/scene/units.h"
 
 // What a measure looks at.
 typedef struct measure_source {
     const brunt_history *history;
     brunt_world *world;
+    brunt_units *units;
     double initial; // value of the measure at the start, NAN: not known; histories know their own
 } measure_source;
 
@@ -15,6 +17,8 @@ typedef struct measure_source {
 typedef struct measure_kind {
     // Whether the run can give it, beside taking it at the start; NULL: nothing else is to be checked.
     int (*check)(const brunt_measure *measure, const measure_source *from, brunt_error *error);
+    // The SI unit of what it is taken from; NULL, or none given: what units are said is not looked at.
+    const char *(*unit)(const brunt_measure *measure, const measure_source *from);
     // Its value, NAN when there is nothing to take it from. `from->initial` may be set.
     int (*take)(const brunt_measure *measure, measure_source *from, double *value, brunt_error *error);
 } measure_kind;
@@ -22,6 +26,7 @@ typedef struct measure_kind {
 #define X(NAME, name) extern const measure_kind measure_##name;
 BRUNT_MEASURE_KINDS(X)
 #undef X
+const measure_kind *measure_kind_of(const brunt_measure *measure);
 
 // What a measure looks at: particles, nodes or elements.
 typedef struct point_set {
@@ -51,4 +56,6 @@ bool measure_unit_axis(const brunt_measure *m, double axis[3]);
 // The component of a field that a measure asks for, or its magnitude.
 double measure_value(const brunt_measure *m, const point_set *set, int64_t p);
 // Whether two units are the same in SI base units, as m/s and m.s-1 are.
-bool measure_same_unit(const char *one, const char *other);
+bool measure_same_unit(brunt_units *units, const char *one, const char *other);
+// Whether `minus` can be subtracted, and the value has the unit that is said. BRUNT_OK or BRUNT_BAD_INPUT.
+int measure_check_units(const brunt_measure *measure, const measure_source *from, brunt_error *error);

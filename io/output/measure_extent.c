@@ -16,11 +16,16 @@ static double extent(const brunt_measure *m, const point_set *set) {
     return set->count ? most - least : NAN;
 }
 
+static const char *unit(const brunt_measure *m, const measure_source *from) {
+    (void)m, (void)from;
+    return "m";
+}
+
 static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
     return measure_take_points(m, from->world, extent, value, error);
 }
 
-const measure_kind measure_extent = {.take = take};
+const measure_kind measure_extent = {.unit = unit, .take = take};
 
 // clang-format off
 SCENE_ROWS(measure_extent_keys,

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "io/output/positions.h"
 
 static double reduce_field(const brunt_measure *m, const point_set *set) {
     double axis[3], least = INFINITY, most = -INFINITY, sum = 0, all = 0;
@@ -41,11 +42,19 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
                       "measures.%s: a field is reduced over the body by take: min, max, mean or max_abs", m->name);
 }
 
+static const char *unit(const brunt_measure *m, const measure_source *from) {
+    const int32_t body = brunt_find_body(from->world, m->body),
+                  field = body >= 0 ? brunt_body_find_field(from->world, body, m->field) : BRUNT_NONE;
+    if (field < 0) return NULL;
+    const char *of = brunt_body_field(from->world, body, field).unit;
+    return *of ? of : "1";
+}
+
 static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
     return measure_take_points(m, from->world, reduce_field, value, error);
 }
 
-const measure_kind measure_field = {.check = check, .take = take};
+const measure_kind measure_field = {.check = check, .unit = unit, .take = take};
 
 // clang-format off
 SCENE_ROWS(measure_field_keys,

@@ -157,41 +157,21 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
     return reduce_distance(m, time, column, rows, divisor, value, error);
 }
 
-// The unit of what is taken of a column in that unit. NULL: what the scene divides by says it.
-static const char *unit_taken(const brunt_measure *m, const char *column) {
-    if (m->curve.count || m->relative_to_initial || !isnan(m->relative_to) || m->take == BRUNT_TAKE_SLOPE) return NULL;
-    return m->take == BRUNT_TAKE_FIRST_NONZERO || m->take == BRUNT_TAKE_LAST_NONZERO || m->take == BRUNT_TAKE_PERIOD ||
-                   m->take == BRUNT_TAKE_RISE
-               ? "s"
-               : column;
+static const char *unit(const brunt_measure *m, const measure_source *from) {
+    const int32_t column = brunt_history_find(from->history, m->column);
+    return column >= 0 ? brunt_history_column_unit(from->history, column) : NULL;
 }
 
-// Bodies of two dimensions are 1 m thick, unless they are rings: their forces and energies may be said to be those of a
-// metre.
-static bool unit_fits(const char *taken, const char *unit, brunt_world *world) {
-    char of_a_metre[BRUNT_UNIT_LENGTH];
-    snprintf(of_a_metre, sizeof of_a_metre, "(%s) m-1", taken);
-    return measure_same_unit(taken, unit) ||
-           (brunt_world_dimension(world) == 2 && !brunt_effect_on(world, "axisymmetric") &&
-            measure_same_unit(of_a_metre, unit));
-}
-
-static int check_units(const brunt_measure *m, const char *unit, brunt_world *world, brunt_error *error) {
-    if (*m->curve_unit && !measure_same_unit(unit, m->curve_unit))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the curve is in %s, the history's column '%s' in %s",
-                          m->name, m->curve_unit, m->column, unit);
-    const char *taken = unit_taken(m, unit);
-    if (taken && *m->unit && !unit_fits(taken, m->unit, world))
-        return brunt_fail(error, BRUNT_BAD_INPUT,
-                          "measures.%s: what it takes of the history's column '%s' is in %s, not %s", m->name,
-                          m->column, taken, m->unit);
-    return BRUNT_OK;
+static int check_curve(const brunt_measure *m, const measure_source *from, const char *of, brunt_error *error) {
+    if (!*m->curve_unit || measure_same_unit(from->units, of, m->curve_unit)) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the curve is in %s, the history's column '%s' in %s",
+                      m->name, m->curve_unit, m->column, of);
 }
 
 static int check(const brunt_measure *m, const measure_source *from, brunt_error *error) {
     const brunt_history *history = from->history;
     const int32_t column = brunt_history_find(history, m->column);
-    if (column >= 0) return check_units(m, brunt_history_column_unit(history, column), from->world, error);
+    if (column >= 0) return check_curve(m, from, brunt_history_column_unit(history, column), error);
     // Name the columns that begin alike ("body."), or the beginnings there are.
     char names[700] = "";
     size_t used = 0, group = strcspn(m->column, ".");
@@ -211,7 +191,7 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
                       m->column, names);
 }
 
-const measure_kind measure_history = {.check = check, .take = take};
+const measure_kind measure_history = {.check = check, .unit = unit, .take = take};
 
 // clang-format off
 SCENE_ROWS(measure_history_keys,

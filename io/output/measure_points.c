@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "io/output/positions.h"
-#include "io/scene/units.h"
 
 // A field of a body in new memory.
 static int read_field(brunt_world *world, int32_t body, const char *name, const brunt_measure *m, double **out,
@@ -102,17 +101,6 @@ double measure_value(const brunt_measure *m, const point_set *set, int64_t p) {
     double square = 0;
     for (int c = 0; c < set->components; c++) square += v[c] * v[c] * (set->components == 6 && c >= 3 ? 2 : 1);
     return sqrt(square);
-}
-
-bool measure_same_unit(const char *one, const char *other) {
-    if (strcmp(one, other) == 0) return true;
-    char base[2][BRUNT_UNIT_LENGTH] = {"", ""}, why[256];
-    double value = 1;
-    brunt_units *units = brunt_units_open();
-    bool same = units && brunt_units_to_si(units, one, &value, base[0], why, sizeof why) &&
-                brunt_units_to_si(units, other, &value, base[1], why, sizeof why) && strcmp(base[0], base[1]) == 0;
-    brunt_units_close(units);
-    return same;
 }
 
 int measure_take_points(const brunt_measure *m, brunt_world *world,

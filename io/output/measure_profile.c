@@ -38,6 +38,11 @@ static void bodies_of(const brunt_measure *m, const brunt_world *world, int32_t 
     *end = only >= 0 ? only + 1 : *m->body ? 0 : brunt_body_count(world);
 }
 
+static const char *unit(const brunt_measure *m, const measure_source *from) {
+    (void)m, (void)from;
+    return "1";
+}
+
 static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
     brunt_world *world = from->world;
     double difference = 0, whole = 0;
@@ -71,14 +76,14 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
         const int32_t field = brunt_body_find_field(world, body, m->field);
         if (field < 0) continue;
         const char *unit = brunt_body_field(world, body, field).unit;
-        if (!measure_same_unit(unit, m->curve_unit))
+        if (!measure_same_unit(from->units, unit, m->curve_unit))
             return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the reference is in %s, the field '%s' in %s",
                               m->name, m->curve_unit, m->field, unit);
     }
     return BRUNT_OK;
 }
 
-const measure_kind measure_profile = {.check = check, .take = take};
+const measure_kind measure_profile = {.check = check, .unit = unit, .take = take};
 
 // clang-format off
 SCENE_ROWS(measure_profile_keys,

@@ -27,11 +27,16 @@ static double radius(const brunt_measure *m, const point_set *set) {
     return most;
 }
 
+static const char *unit(const brunt_measure *m, const measure_source *from) {
+    (void)m, (void)from;
+    return "m";
+}
+
 static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
     return measure_take_points(m, from->world, radius, value, error);
 }
 
-const measure_kind measure_radius = {.take = take};
+const measure_kind measure_radius = {.unit = unit, .take = take};
 
 // clang-format off
 SCENE_ROWS(measure_radius_keys,

@@ -36,11 +36,16 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
                       m->name, m->body);
 }
 
+static const char *unit(const brunt_measure *m, const measure_source *from) {
+    (void)m, (void)from;
+    return "rad";
+}
+
 static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
     return measure_take_points(m, from->world, twist, value, error);
 }
 
-const measure_kind measure_twist = {.check = check, .take = take};
+const measure_kind measure_twist = {.check = check, .unit = unit, .take = take};
 
 // clang-format off
 SCENE_ROWS(measure_twist_keys,

@@ -13,13 +13,16 @@ static const measure_kind *const kinds[] = {
 #define AND_ONE(NAME, name) +1
 _Static_assert(BRUNT_COUNT(kinds) == 0 BRUNT_MEASURE_KINDS(AND_ONE), "a row for each kind of measure");
 
+const measure_kind *measure_kind_of(const brunt_measure *measure) { return kinds[measure->kind]; }
+
 int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
-                        brunt_error *error) {
-    const measure_kind *kind = kinds[measure->kind];
-    const measure_source from = {.history = history, .world = world};
+                        brunt_units *units, brunt_error *error) {
+    const measure_kind *kind = measure_kind_of(measure);
+    const measure_source from = {.history = history, .world = world, .units = units};
     if (measure->absent) return BRUNT_OK;
     int status = kind->check ? kind->check(measure, &from, error) : BRUNT_OK;
     double unused;
+    if (!status) status = measure_check_units(measure, &from, error);
     return status ? status : brunt_measure_initial(measure, world, &unused, error);
 }
 
@@ -27,7 +30,7 @@ int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, doub
     *initial = NAN;
     measure_source from = {.world = world};
     return measure->kind == BRUNT_MEASURE_HISTORY ? BRUNT_OK
-                                                  : kinds[measure->kind]->take(measure, &from, initial, error);
+                                                  : measure_kind_of(measure)->take(measure, &from, initial, error);
 }
 
 int brunt_measures_fetch(const brunt_measure *measures, int32_t count, const brunt_history *history,
@@ -49,7 +52,7 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
     if (measure->absent) return BRUNT_OK;
     double value = NAN;
     measure_source from = {.history = history, .world = world, .initial = initial};
-    int status = kinds[measure->kind]->take(measure, &from, &value, error);
+    int status = measure_kind_of(measure)->take(measure, &from, &value, error);
     if (status) return status;
     if (!measure->curve.count || measure->kind == BRUNT_MEASURE_PROFILE) {
         value -= measure->minus;

@@ -3,6 +3,7 @@
 
 #include "io/output/history.h"
 #include "io/scene/scene.h"
+#include "io/scene/units.h"
 
 typedef struct brunt_measure_result {
     double value; // in the measure's own (SI) unit; NAN when there was nothing to take it from
@@ -13,9 +14,9 @@ typedef struct brunt_measure_result {
 } brunt_measure_result;
 
 // Checks before the run that the history columns, bodies and fields a measure names exist. BRUNT_BAD_INPUT with the
-// names there are.
+// names there are, or of a unit that is not that of what it names.
 int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
-                        brunt_error *error);
+                        brunt_units *units, brunt_error *error);
 
 // The value at the start of a measure that looks at a body (NAN for one that reads the history): the divisor of
 // `relative_to: initial`. To be called before the world has moved or been restored.

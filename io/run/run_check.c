@@ -56,11 +56,14 @@ int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_hi
         if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
         mistakes++;
     }
+    brunt_units *units = brunt_units_open();
+    if (!units) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int32_t m = 0; m < scene->measure_count; m++) {
-        if (!brunt_measure_check(&scene->measures[m], history, world, mistakes ? &found : error)) continue;
+        if (!brunt_measure_check(&scene->measures[m], history, world, units, mistakes ? &found : error)) continue;
         if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
         mistakes++;
     }
+    brunt_units_close(units);
     if (scene->output.tractions && brunt_world_tell_tractions(world, mistakes ? &found : error)) {
         if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
         mistakes++;

@@ -55,10 +55,11 @@ typedef struct brunt_measure {
     bool relative_to_initial;  // divide by the value at the first sample
     double relative_to;        // divide by this (NAN: no)
     double minus;              // subtract this first (default 0)
-    double expect, tolerance;  // NAN: none; tolerance is relative to expect ...
-    bool absolute;             // ... or absolute (`tolerance: 0.1 mm` with `tolerance_is: absolute`)
-    char unit[32];             // of the value, as printed
-    char source[256];          // where the reference is from
+    char minus_unit[64], relative_unit[64]; // SI units the two were given in; "": none was
+    double expect, tolerance;               // NAN: none; tolerance is relative to expect ...
+    bool absolute;                          // ... or absolute (`tolerance: 0.1 mm` with `tolerance_is: absolute`)
+    char unit[32];                          // of the value, as printed
+    char source[256];                       // where the reference is from
 } brunt_measure;
 
 // Probe: a field of the particle, node or element (where the field lives) of a body that is nearest to a point at the

@@ -266,12 +266,12 @@ static const scene_key own_rows[] = {
     {"measures.*.curve", SCENE_CURVE, "any", OPTIONAL, NONE, "reference over time for the history, [[0 s, 0 m], [1 s, 2 m]], linear between: what is reduced (take: max_abs by default, max, min, mean, initial or end) is history less curve, after minus and relative_to, over the curve's range of values, from its first to its last time"},
     {"measures.*.from", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "of the history only from then ..."},
     {"measures.*.to", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "... to then"},
-    {"measures.*.minus", SCENE_ANY_UNIT, "any", "0", NONE, "subtracted first"},
+    {"measures.*.minus", SCENE_ANY_UNIT, "any", "0", NONE, "subtracted first, in the unit of what is taken"},
     {"measures.*.relative_to", SCENE_ANY_UNIT, "any", OPTIONAL, ANY, "initial", 0, false, "then divided by this, or by the first value of the history"},
     {"measures.*.expect", SCENE_ANY_UNIT, "any", OPTIONAL, NONE, "the value it should have"},
     {"measures.*.tolerance", SCENE_ANY_UNIT, "any", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "how far it may be off, relative to expect"},
     {"measures.*.tolerance_is", SCENE_WORD, NULL, "relative", ANY, "relative|absolute", 0, true, "absolute: the tolerance is in the value's own unit"},
-    {"measures.*.unit", SCENE_TEXT, NULL, "''", NONE, "SI unit of the value, as printed (default: that of expect); of the history that of the column, or s for times, which a wrong one does not pass for; of plane bodies also by a metre (N/m), and any where it is divided (relative_to, slope)"},
+    {"measures.*.unit", SCENE_TEXT, NULL, "''", NONE, "SI unit of the value, as printed (default: that of expect); that of what is taken (a column's, s for times, m, rad, a field's), by that of relative_to if it has one, which a wrong one does not pass for; of plane bodies also by a metre (N/m)"},
     {"measures.*.source", SCENE_TEXT, NULL, "''", NONE, "where the expected value is from"},
 };
 

@@ -403,7 +403,9 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
 
 static void fill_reference(scene_reader *reader, scene_node *node, brunt_measure *measure) {
     const scene_node *relative = brunt_tree_child(node, "relative_to");
+    const scene_node *minus = brunt_tree_child(node, "minus");
     measure->minus = brunt_real_of(node, "minus", 0);
+    if (has_unit(minus)) snprintf(measure->minus_unit, sizeof measure->minus_unit, "%.63s", minus->base);
     measure->relative_to = NAN;
     if (!relative || !relative->good) return;
     if (!relative->number)
@@ -412,6 +414,7 @@ static void fill_reference(scene_reader *reader, scene_node *node, brunt_measure
         brunt_tree_complain(reader->tree, relative, "a division by zero");
     else
         measure->relative_to = relative->value[0];
+    if (has_unit(relative)) snprintf(measure->relative_unit, sizeof measure->relative_unit, "%.63s", relative->base);
 }
 
 static void fill_expectation(scene_reader *reader, scene_node *node, brunt_measure *measure) {

@@ -12,15 +12,18 @@ static const double rounding = sizeof(real) == 4 ? 1e-5 : 1e-12;
 static brunt_scene scene;
 static brunt_world *world;
 static brunt_history *history;
+static brunt_units *units;
 
 static void set_up(void) {
     small_scene(&scene, NULL, 0);
     world = small_world(&scene);
     history = brunt_history_create(world, &scene, NULL);
     ck_assert_ptr_nonnull(history);
+    units = brunt_units_open();
 }
 
 static void tear_down(void) {
+    brunt_units_close(units);
     brunt_history_destroy(history);
     brunt_world_destroy(world);
     brunt_scene_free(&scene);
@@ -43,7 +46,7 @@ static brunt_measure blank(brunt_measure_kind kind) {
 static brunt_measure_result evaluate(const brunt_measure *m, double initial) {
     brunt_measure_result result;
     brunt_error error = {0};
-    int status = brunt_measure_check(m, history, world, &error);
+    int status = brunt_measure_check(m, history, world, units, &error);
     ck_assert_msg(status == BRUNT_OK, "%s", error.message);
     status = brunt_measure_evaluate(m, history, world, initial, &result, &error);
     ck_assert_msg(status == BRUNT_OK, "%s", error.message);
@@ -239,16 +242,16 @@ START_TEST(curves_of_scenes) {
     brunt_scene_free(&again);
     // The unit is that of the column.
     brunt_error error = {0};
-    ck_assert_int_eq(brunt_measure_check(m, history, world, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_measure_check(m, history, world, units, &error), BRUNT_OK);
     brunt_measure other = *m;
     strcpy(other.column, "body.left.velocity_x");
-    ck_assert_int_eq(brunt_measure_check(&other, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&other, history, world, units, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(strstr(error.message, "the curve is in m, the history's column 'body.left.velocity_x' in m/s"), "%s",
                   error.message);
     strcpy(other.curve_unit, "m.s-1");
-    ck_assert_int_eq(brunt_measure_check(&other, history, world, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_measure_check(&other, history, world, units, &error), BRUNT_OK);
     other.curve_unit[0] = 0; // SI, whatever that is
-    ck_assert_int_eq(brunt_measure_check(&other, history, world, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_measure_check(&other, history, world, units, &error), BRUNT_OK);
     brunt_scene_free(&read);
 }
 END_TEST
@@ -279,12 +282,78 @@ START_TEST(units_are_those_of_columns) {
         strcpy(m.column, cases[c].column), strcpy(m.unit, cases[c].unit), strcpy(m.name, "v");
         m.take = cases[c].take, m.relative_to = cases[c].relative_to;
         brunt_error error = {0};
-        ck_assert_msg(brunt_measure_check(&m, history, world, &error) == cases[c].status, "case %zu: %s", c,
+        ck_assert_msg(brunt_measure_check(&m, history, world, units, &error) == cases[c].status, "case %zu: %s", c,
                       error.message);
         if (c == 3)
             ck_assert_str_eq(
                 error.message,
                 "measures.v: what it takes of the history's column 'body.left.velocity_x' is in m/s, not m");
+    }
+}
+END_TEST
+
+// What is taken of bodies has a unit as well; what is subtracted is of that unit, and a divisor with a unit divides it.
+START_TEST(units_are_those_of_values) {
+    static const struct {
+        brunt_measure_kind kind;
+        const char *of, *unit, *minus, *relative;
+        int status;
+        const char *message;
+    } cases[] = {
+        {BRUNT_MEASURE_EXTENT, "", "m", "m", "", BRUNT_OK, ""},
+        {BRUNT_MEASURE_EXTENT, "", "s", "", "", BRUNT_BAD_INPUT, "measures.m: it is in m, not s"},
+        {BRUNT_MEASURE_EXTENT, "", "", "s", "", BRUNT_BAD_INPUT,
+         "measures.m.minus: it is in s, what it is subtracted from in m"},
+        {BRUNT_MEASURE_EXTENT, "", "1", "", "m", BRUNT_OK, ""},
+        {BRUNT_MEASURE_EXTENT, "", "m/s", "", "s", BRUNT_OK, ""},
+        {BRUNT_MEASURE_EXTENT, "", "m", "", "s", BRUNT_BAD_INPUT, "measures.m: it is in m.s-1, not m"},
+        {BRUNT_MEASURE_RADIUS, "", "m", "m", "", BRUNT_OK, ""},
+        {BRUNT_MEASURE_RADIUS, "", "Pa", "", "", BRUNT_BAD_INPUT, "measures.m: it is in m, not Pa"},
+        {BRUNT_MEASURE_TWIST, "", "rad", "", "", BRUNT_OK, ""},
+        {BRUNT_MEASURE_TWIST, "", "m", "", "", BRUNT_BAD_INPUT, "measures.m: it is in rad, not m"},
+        {BRUNT_MEASURE_FIELD, "velocity", "m/s", "m.s-1", "", BRUNT_OK, ""},
+        {BRUNT_MEASURE_FIELD, "velocity", "m", "", "", BRUNT_BAD_INPUT, "measures.m: it is in m/s, not m"},
+        {BRUNT_MEASURE_HISTORY, "body.left.velocity_x", "", "m/s", "", BRUNT_OK, ""},
+        {BRUNT_MEASURE_HISTORY, "body.left.velocity_x", "", "m", "", BRUNT_BAD_INPUT,
+         "measures.m.minus: it is in m, what it is subtracted from in m/s"},
+        {BRUNT_MEASURE_HISTORY, "energy.kinetic", "m", "", "J/m", BRUNT_OK, ""},
+        {BRUNT_MEASURE_HISTORY, "energy.kinetic", "s", "", "J", BRUNT_BAD_INPUT, "measures.m: it is in 1, not s"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        brunt_measure m = blank(cases[c].kind);
+        strcpy(m.column, cases[c].of), strcpy(m.field, cases[c].of), strcpy(m.unit, cases[c].unit);
+        strcpy(m.minus_unit, cases[c].minus), strcpy(m.relative_unit, cases[c].relative);
+        m.relative_to = *cases[c].relative ? 2 : NAN;
+        m.take = m.kind == BRUNT_MEASURE_FIELD ? BRUNT_TAKE_MEAN : BRUNT_TAKE_END;
+        m.axis[0] = 1;
+        brunt_error error = {0};
+        const int status = brunt_measure_check(&m, history, world, units, &error);
+        ck_assert_msg(status == cases[c].status, "case %zu: %s", c, error.message);
+        ck_assert_str_eq(error.message, cases[c].message);
+    }
+}
+END_TEST
+
+// As scenes say them: a time from a length, and a length over a time.
+START_TEST(units_of_scenes) {
+    static const struct {
+        const char *set, *complaint;
+    } cases[] = {
+        {"measures={way: {history: body.left.position_x, minus: 3 ms}}",
+         "way.minus: it is in s, what it is subtracted from in m"},
+        {"measures={way: {history: body.left.position_x, relative_to: 3 ms, unit: m}}", "way: it is in m.s-1, not m"},
+        {"measures={way: {history: body.left.position_x, take: slope, unit: m}}", "way: it is in m.s-1, not m"},
+        {"measures={way: {history: body.left.position_x, relative_to: initial, unit: m}}", "way: it is in 1, not m"},
+        {"measures={way: {history: body.left.position_x, minus: 0.25, relative_to: 2, unit: m}}", NULL},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        brunt_scene read;
+        small_scene(&read, &cases[c].set, 1);
+        brunt_error error = {0};
+        const int status = brunt_measure_check(&read.measures[0], history, world, units, &error);
+        ck_assert_msg(status == (cases[c].complaint ? BRUNT_BAD_INPUT : BRUNT_OK), "case %zu", c);
+        if (cases[c].complaint) ck_assert_msg(strstr(error.message, cases[c].complaint), "%s", error.message);
+        brunt_scene_free(&read);
     }
 }
 END_TEST
@@ -691,7 +760,7 @@ START_TEST(profiles_weigh_by_volume) {
     // Velocities are at nodes: there is no volume.
     brunt_error error = {0};
     strcpy(m.field, "velocity");
-    ck_assert_int_eq(brunt_measure_check(&m, NULL, bar, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, NULL, bar, units, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(
         strstr(error.message, "'velocity' of body 'lower' is at nodes, a profile wants particles or elements"), "%s",
         error.message);
@@ -707,31 +776,31 @@ START_TEST(profiles_that_cannot_be_are_refused) {
     brunt_error error = {0};
     small_scene(&read, sets, 1);
     brunt_measure m = read.measures[0];
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(strstr(error.message, "the reference is in m-1.kg.s-2, the field 'density' in kg/m^3"), "%s",
                   error.message);
     m = read.measures[1];
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_OK);
     ck_assert_double_eq_tol(evaluate(&m, NAN).value, 2.0 / 3, 100 * rounding);
     strcpy(m.body, "middle");
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(strstr(error.message, "no body 'middle'"), "%s", error.message);
     m.body[0] = 0;
     strcpy(m.field, "desnity");
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(strstr(error.message, "no body has a field 'desnity'"), "%s", error.message);
     strcpy(m.body, "left");
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(strstr(error.message, "body 'left' has no field 'desnity'"), "%s", error.message);
     strcpy(m.field, "density");
     m.component = 3;
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     m.component = -1;
     m.take = BRUNT_TAKE_MAX;
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     m.take = BRUNT_TAKE_END;
     m.curve.count = 0;
-    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
     brunt_scene_free(&read);
 }
 END_TEST
@@ -784,7 +853,7 @@ START_TEST(unknown_names_are_refused) {
         m.take = cases[c].take;
         m.axis[0] = 1;
         brunt_error error = {0};
-        ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+        ck_assert_int_eq(brunt_measure_check(&m, history, world, units, &error), BRUNT_BAD_INPUT);
         ck_assert_msg(strstr(error.message, cases[c].message) != NULL, "%s", error.message);
     }
 }
@@ -801,6 +870,8 @@ int main(void) {
     tcase_add_test(values, curves_of_shares);
     tcase_add_test(values, curves_of_scenes);
     tcase_add_test(values, units_are_those_of_columns);
+    tcase_add_test(values, units_are_those_of_values);
+    tcase_add_test(values, units_of_scenes);
     tcase_add_test(values, values_are_judged);
     tcase_add_test(values, extent_reaches_to_the_surfaces);
     tcase_add_test(values, extent_of_a_turned_block);
