@@ -95,13 +95,38 @@ static void follow(const brunt_held_grid *g, const image_class *c, int i, const 
     brunt_impulse_account_add(account, &own);
 }
 
-void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double now[3],
+// The components that something later gives another velocity than `rest`, which is that of those held here.
+static unsigned given_later(const brunt_held_grid *g, const brunt_slot *slot, int node, const double rest[3],
+                            unsigned held) {
+    const brunt_grid *grid = &g->body->grid;
+    const bool total = brunt_total_lagrangian(&g->body->particles);
+    unsigned given = 0;
+    double x[3];
+    if (!g->later_count) return 0;
+    brunt_node_position(grid, slot->coord, node, x);
+    if (brunt_axisymmetric(&g->body->particles)) x[0] = fabs(x[0]);
+    for (int k = 0; k < g->later_count; k++) {
+        const brunt_boundary *b = &g->later[k];
+        double v[3] = {0};
+        if (!b->kind->hold_at || b->symmetry_plane >= 0 || (b->body >= 0 && b->body != g->body->index)) continue;
+        const double time = total && b->kind->is_plane ? 0 : g->time; // of such bodies planes are where they began
+        const unsigned theirs = b->kind->hold_at(b, grid->dim, time, x, BRUNT_ON_BOUNDARY * (double)grid->h, v);
+        for (int a = 0; a < grid->dim; a++)
+            if (theirs >> a & 1 && (!(held >> a & 1) || v[a] != rest[a])) given |= 1u << a;
+    }
+    return given;
+}
+
+void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double velocity[3],
                           const double rest[3], unsigned held, brunt_impulse_account *account) {
     const brunt_grid *grid = &g->body->grid;
     const int64_t number = (slot - grid->slots) * BRUNT_BLOCK_NODES + node;
     const real *n = grid->nodes + number * BRUNT_NODE_REALS;
+    const unsigned theirs = given_later(g, slot, node, rest, held);
     image_class c;
-    double x[3], given[3] = {0}, moves[3] = {0};
+    double x[3], now[3] = {0}, given[3] = {0}, moves[3] = {0};
+    held &= ~theirs;
+    for (int a = 0; a < grid->dim; a++) now[a] = theirs >> a & 1 ? (double)n[BRUNT_NODE_VELOCITY + a] : velocity[a];
     if (!g->symmetry_count) {
         hold_node(g->body, number, now, rest, held, account, x);
         return;

@@ -23,7 +23,12 @@ struct brunt_held_grid {
     const brunt_symmetry_plane *symmetry; // without the axis of rings
     int symmetry_count;
     brunt_impulse_account *const *account; // of each
+    const brunt_boundary *later;           // that come after what holds it now
+    int later_count;
+    double time; // [s]
 };
-// Gives a node its velocity, holds components of it (bits), and records what moves at `rest`.
-void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double now[3],
+// Gives a node its velocity, holds components of it (bits), and records what moves at `rest`. Components that something
+// later gives another velocity are that one's alone: what would bring them to a velocity that they do not keep would
+// bear an impulse that nothing feels, and the work of it.
+void brunt_condition_hold(const brunt_held_grid *g, const brunt_slot *slot, int node, const double velocity[3],
                           const double rest[3], unsigned held, brunt_impulse_account *account);

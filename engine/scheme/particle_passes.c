@@ -151,14 +151,18 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
     return BRUNT_OK;
 }
 
-static void hold_nodes(brunt_boundaries *boundaries, brunt_boundary *boundary, brunt_body *body, double time,
-                       bool accounted) {
+// Boundary w holds nodes of a body; it is not `accounted` where they only get the velocities that it gave them once
+// more.
+static void hold_nodes(brunt_boundaries *boundaries, int w, brunt_body *body, double time, bool accounted) {
+    brunt_boundary *boundary = &boundaries->boundary[w], silent;
     acting_symmetry s;
     if (!boundary->kind->hold_grid) return;
+    if (!accounted) silent = *boundary;
     find_symmetry(boundaries, body, accounted, &s);
     const int axis = s.count && s.plane[0].boundary < 0; // the first: what is beyond it is held by itself
-    boundary->kind->hold_grid(&(brunt_held_grid){body, s.plane + axis, s.count - axis, s.account + axis}, boundary,
-                              time);
+    boundary->kind->hold_grid(&(brunt_held_grid){body, s.plane + axis, s.count - axis, s.account + axis, boundary + 1,
+                                                 boundaries->boundary_count - w - 1, time},
+                              accounted ? boundary : &silent, time);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that
@@ -169,11 +173,11 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
         if (brunt_condition_clear(&world->bodies.mpm[i], error))
             return brunt_fail_inner(&world->clock, &world->bodies.mpm[i], error);
     for (int w = 0; w < world->boundaries.boundary_count; w++) {
-        brunt_boundary *boundary = &world->boundaries.boundary[w];
+        const brunt_boundary *boundary = &world->boundaries.boundary[w];
         brunt_body *only = boundary->body < 0 ? NULL : world->bodies.all[boundary->body].mpm;
-        if (only) hold_nodes(&world->boundaries, boundary, only, world->clock.time, true);
+        if (only) hold_nodes(&world->boundaries, w, only, world->clock.time, true);
         for (int i = 0; i < world->bodies.mpm_count && boundary->body < 0; i++)
-            hold_nodes(&world->boundaries, boundary, &world->bodies.mpm[i], world->clock.time, true);
+            hold_nodes(&world->boundaries, w, &world->bodies.mpm[i], world->clock.time, true);
     }
     return BRUNT_OK;
 }
@@ -263,10 +267,8 @@ static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
     int w;
     brunt_boundary_walk acting = brunt_boundaries_of(&world->boundaries.acting, body->index);
-    while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE) {
-        brunt_boundary boundary = world->boundaries.boundary[w];
-        hold_nodes(&world->boundaries, &boundary, body, world->clock.time, false);
-    }
+    while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE)
+        hold_nodes(&world->boundaries, w, body, world->clock.time, false);
 }
 
 // Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions

@@ -1,5 +1,5 @@
 // What meets material points that a region holds meets an infinite mass: a block that rests on them does not sink, and
-// they take no energy.
+// they take no energy. Of several regions the last one's velocity is theirs, and it alone gives it to them.
 #include "tests/support/hard_world.h"
 
 static const double H = 0.1; // [m] cells and edges
@@ -83,6 +83,71 @@ START_TEST(a_plane_gives_way_to_what_moves_points) {
 }
 END_TEST
 
+static brunt_region_def *add_region(brunt_world_def *def, const char *body) {
+    brunt_region_def *r = &def->regions[def->region_count++];
+    *r = brunt_region_def_default();
+    snprintf(r->body, sizeof r->body, "%s", body);
+    r->shape.kind = BRUNT_BOX;
+    for (int a = 0; a < 2; a++) r->component[a] = true, r->shape.min[a] = -100 * H, r->shape.max[a] = 100 * H;
+    return r;
+}
+
+// A block within two regions: the first gives it (2, 1) m/s, the second -3 m/s along x, and leaves y free. What each
+// gives is the block's momentum, once: nothing where the other one's velocity is kept.
+START_TEST(the_last_region_alone_acts) {
+    enum { ALWAYS, NOT_YET, OF_ANOTHER, ALIKE, CASES };
+    const int is = _i % CASES;
+    brunt_world_def def = def_begin(2, H);
+    def.regions = brunt_alloc(DEF_CAPACITY * sizeof *def.regions);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def_box(&def, "block", XYZ(0, 0, 0), XYZ(2 * H, 2 * H, 0));
+    def_box(&def, "other", XYZ(9 * H, 0, 0), XYZ(10 * H, 2 * H, 0));
+    brunt_region_def *first = add_region(&def, ""), *second = add_region(&def, is == OF_ANOTHER ? "other" : "");
+    first->velocity[0] = is == ALIKE ? -3 : 2, first->velocity[1] = 1;
+    second->velocity[0] = -3, second->component[1] = false;
+    first->shape.max[0] = 5 * H, second->shape.max[0] = is == OF_ANOTHER ? 100 * H : 5 * H;
+    if (is == NOT_YET) second->start = 1;
+    if (_i >= CASES) def.kernel = BRUNT_LINEAR, def.transfer = BRUNT_PIC; // velocities go to the grid a second time
+    brunt_world *world = world_take(&def);
+    const double mass = 1000 * 4 * H * H;
+    world_steps(world, 10);
+    brunt_reaction by[2];
+    for (int w = 0; w < 2; w++) brunt_boundary_reaction(world, w, &by[w]);
+    const double way[4] = {0, 2, 2, -3}, tolerance = TOLERANCE(1e-12, 1e-5) * mass;
+    ck_assert_double_eq_tol(by[0].impulse[0], way[is] * mass, tolerance);
+    ck_assert_double_eq_tol(by[0].impulse[1], mass, tolerance);
+    ck_assert_double_eq_tol(by[1].impulse[0], is == ALWAYS ? -3 * mass : is == OF_ANOTHER ? -1.5 * mass : 0, tolerance);
+    ck_assert_double_eq_tol(by[1].impulse[1], 0, tolerance);
+    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
+}
+END_TEST
+
+// A block on a floor that holds its lowest nodes, pushed by a wall that holds those of its side, the corner in both:
+// energy is kept as with one of them.
+START_TEST(regions_that_overlap_keep_the_ledger) {
+    double error[2];
+    for (int overlap = 0; overlap < 2; overlap++) {
+        brunt_world_def def = def_begin(2, H);
+        def.regions = brunt_alloc(DEF_CAPACITY * sizeof *def.regions);
+        def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+        def_box(&def, "block", XYZ(0, 0, 0), XYZ(10 * H, 10 * H, 0));
+        brunt_region_def *floor = add_region(&def, ""), *wall = add_region(&def, "");
+        floor->shape.max[1] = H, wall->shape.max[0] = 1.5 * H, wall->velocity[0] = 1;
+        if (!overlap) wall->shape.min[1] = 1.5 * H;
+        brunt_world *world = world_take(&def);
+        world_until(world, 0.02);
+        brunt_energy energy;
+        brunt_world_energy(world, &energy);
+        error[overlap] = fabs(energy.error / energy.external_work);
+        printf("energy lost or made %.3g of the work\n", error[overlap]);
+        brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
+    ck_assert(error[0] < 2e-4 && error[1] < 2e-4);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("held_points");
     TCase *looped = tcase_create("bears_a_block");
@@ -90,6 +155,8 @@ int main(void) {
     suite_add_tcase(suite, looped);
     TCase *planes = tcase_create("planes");
     tcase_add_test(planes, a_plane_gives_way_to_what_moves_points);
+    tcase_add_loop_test(planes, the_last_region_alone_acts, 0, 8);
+    tcase_add_test(planes, regions_that_overlap_keep_the_ledger);
     suite_add_tcase(suite, planes);
     return suite_main(suite);
 }
