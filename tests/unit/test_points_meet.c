@@ -53,12 +53,37 @@ START_TEST(what_goes_round_a_corner_feels_nothing) {
 }
 END_TEST
 
+// A thin body between two: the lower one does not feel it in the step in which the upper one first pushes it, for it is
+// not there yet. Whether two that rest are apart is asked where a third one is at their node.
+START_TEST(what_is_pushed_is_not_felt_before_it_is_there) {
+    const double gap = 0.125; // nodes are in the middle of the thin one, where normals are those of the faces
+    brunt_world_def def = two(2 + _i % 2, 1e4, 0);
+    const int up = _i / 2; // along x or y
+    double low[3][3] = {{0}}, high[3][3];
+    for (int b = 0; b < 3; b++)
+        for (int a = 0; a < 3; a++) high[b][a] = a == up ? 1 : 8;
+    low[1][up] = 1 + gap, high[1][up] = low[1][up] + 0.25;
+    low[2][up] = high[1][up], high[2][up] = low[2][up] + 1;
+    for (int b = 0; b < 3; b++) def_box(&def, (const char *[]){"a", "b", "c"}[b], low[b], high[b]);
+    def.bodies[2].velocity[up] = -1;
+    def.step = 0.004;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    brunt_body_sums sums[3];
+    for (int b = 0; b < 3; b++) brunt_body_totals(world, b, &sums[b]);
+    ck_assert_double_lt(sums[1].velocity[up], -0.1);
+    ck_assert_double_lt(fabs(sums[0].velocity[up]), 1e-4); // at the rim, where normals are tilted
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("points_meet");
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 120);
     tcase_add_loop_test(all, what_slides_is_held_by_coulombs_share, 0, 12);
     tcase_add_loop_test(all, what_goes_round_a_corner_feels_nothing, 0, 32);
+    tcase_add_loop_test(all, what_is_pushed_is_not_felt_before_it_is_there, 0, 4);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
