@@ -28,6 +28,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/sweep.h"
 
 enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 16 };
 static const double SWEEP_TOLERANCE = 1e-13; // of the velocities at the node
@@ -150,21 +151,25 @@ static int share_slots(const job *j, int body, int other, brunt_error *error) {
 }
 
 // Of each two bodies that may touch and whose boxes overlap, the slots in there: boxes by their low ends, so that of
-// many bodies only those that overlap along the first axis are looked at.
+// many bodies only those that overlap along the axis that they are spread out along are looked at.
 static int find_shared(job *j, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
     const int n = j->m->mpm_count;
     if (BRUNT_CAPACITY(w->bounds, (size_t)n, 0, "bodies of material points", error) ||
         BRUNT_CAPACITY(w->lows, (size_t)n, 0, "bodies of material points", error))
         return BRUNT_FAILED;
+    brunt_spread spread = {.count = 0};
     for (int b = 0; b < n; b++) {
+        const box *of = &w->bounds[b];
         w->bounds[b] = slot_bounds(&j->bodies[b].grid);
-        w->lows[b] = (body_low){w->bounds[b].low[0], b};
+        if (of->low[0] <= of->high[0]) brunt_spread_add(&spread, (const double[3]){of->low[0], of->low[1], of->low[2]});
     }
+    const int axis = brunt_spread_axis(&spread);
+    for (int b = 0; b < n; b++) w->lows[b] = (body_low){w->bounds[b].low[axis], b};
     qsort(w->lows, (size_t)n, sizeof *w->lows, compare_low);
     for (int i = 0; i < n; i++) {
         const int a = w->lows[i].body;
-        for (int k = i + 1; k < n && w->lows[k].low <= w->bounds[a].high[0]; k++) {
+        for (int k = i + 1; k < n && w->lows[k].low <= w->bounds[a].high[axis]; k++) {
             const int b = w->lows[k].body;
             if (!overlap(&w->bounds[a], &w->bounds[b]) || pair_between(j, a, b) < 0) continue;
             if (share_slots(j, a, b, error) || share_slots(j, b, a, error)) return BRUNT_FAILED;

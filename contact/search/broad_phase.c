@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "base/sweep.h"
 #include "contact/planes/boundary_lists.h"
 #include "mpm/particles.h"
 #include "mpm/mpm_body.h"
@@ -34,7 +35,7 @@ static void bound_grid(const brunt_body *body, body_box *box) {
 
 static int by_low(const void *a, const void *b) {
     const body_box *p = a, *q = b;
-    return p->low[0] < q->low[0] ? -1 : p->low[0] > q->low[0] ? 1 : p->body - q->body;
+    return p->start < q->start ? -1 : p->start > q->start ? 1 : p->body - q->body;
 }
 
 static bool overlap(const body_box *a, const body_box *b, double by) {
@@ -67,6 +68,10 @@ static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
         *box = (body_box){.body = mpm[k].index, .fem = -1, .mpm = k};
         bound_grid(&mpm[k], box);
     }
+    brunt_spread spread = {.count = 0};
+    for (int32_t k = 0; k < f->bodies.box_count; k++) brunt_spread_add(&spread, f->bodies.box[k].low);
+    f->bodies.axis = brunt_spread_axis(&spread);
+    for (int32_t k = 0; k < f->bodies.box_count; k++) f->bodies.box[k].start = f->bodies.box[k].low[f->bodies.axis];
     qsort(f->bodies.box, (size_t)f->bodies.box_count, sizeof *f->bodies.box, by_low);
     for (int32_t k = 0; k < f->bodies.box_count; k++)
         if (f->bodies.box[k].fem >= 0) f->bodies.box_of[f->bodies.box[k].fem] = k;
@@ -132,11 +137,12 @@ static int list_near(near_bodies *bodies, brunt_error *error) {
 }
 
 static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
+    const int axis = f->bodies.axis;
     f->bodies.pair_count = 0;
     for (int32_t i = 0; i < f->bodies.box_count; i++)
         // A membrane may be near itself.
         for (int32_t k = f->bodies.box[i].membrane ? i : i + 1;
-             k < f->bodies.box_count && f->bodies.box[k].low[0] - 2 * f->bodies.range <= f->bodies.box[i].high[0];
+             k < f->bodies.box_count && f->bodies.box[k].start - 2 * f->bodies.range <= f->bodies.box[i].high[axis];
              k++) {
             const body_box *a = &f->bodies.box[i], *b = &f->bodies.box[k];
             const brunt_pair *pair = overlap(a, b, 2 * f->bodies.range) ? pair_between(m, a, b) : NULL;

@@ -5,8 +5,9 @@
 
 typedef struct body_box {
     double low[3], high[3];
-    int body; // of the world
-    int fem;  // index in the surface, -1: material points
+    double start; // [m] its low end along the axis that boxes are sorted by
+    int body;     // of the world
+    int fem;      // index in the surface, -1: material points
     int mpm;
     bool membrane;
     bool seen;         // nodes or particles of some that is near look at its facets
@@ -22,7 +23,8 @@ typedef struct near_bodies {
     double range;        // [m] how far a body looks for others in this step ...
     double travel;       // ... and how far anything moves towards anything ...
     double plane_travel; // ... and towards a plane
-    body_box *box;       // by low end
+    body_box *box;       // by low end along `axis`, the one along which they are spread out most
+    int axis;
     size_t box_capacity;
     int32_t box_count;
     near_pair *pair;

@@ -1,5 +1,6 @@
 #include "base/sweep.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -29,19 +30,31 @@ static bool share(const brunt_box *a, const brunt_box *b) {
     return true;
 }
 
-// The axis along which most boxes are apart: the one with the greatest extent of their lower ends.
-static int widest_axis(const brunt_box *boxes, int32_t count) {
-    int widest = 0;
-    double most = -1;
+void brunt_spread_add(brunt_spread *spread, const double x[3]) {
+    for (int k = 0; k < 3; k++)
+        if (!isfinite(x[k])) return;
+    if (!spread->count++)
+        for (int k = 0; k < 3; k++) spread->from[k] = x[k];
     for (int k = 0; k < 3; k++) {
-        double low = 1e300, high = -1e300;
-        for (int32_t i = 0; i < count; i++) {
-            if (boxes[i].low[k] < low && boxes[i].low[k] > -1e300) low = boxes[i].low[k];
-            if (boxes[i].low[k] > high && boxes[i].low[k] < 1e300) high = boxes[i].low[k];
-        }
-        if (high - low > most) most = high - low, widest = k;
+        const double d = x[k] - spread->from[k];
+        spread->sum[k] += d, spread->square[k] += d * d;
     }
-    return widest;
+}
+
+int brunt_spread_axis(const brunt_spread *spread) {
+    double most = 0;
+    int axis = 0;
+    for (int k = 0; k < 3; k++) {
+        const double variance = (double)spread->count * spread->square[k] - spread->sum[k] * spread->sum[k];
+        if (variance > most) most = variance, axis = k;
+    }
+    return axis;
+}
+
+static int widest_axis(const brunt_box *boxes, int32_t count) {
+    brunt_spread spread = {.count = 0};
+    for (int32_t i = 0; i < count; i++) brunt_spread_add(&spread, boxes[i].low);
+    return brunt_spread_axis(&spread);
 }
 
 int brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs, int64_t *found,

@@ -200,6 +200,64 @@ START_TEST(a_sweep_finds_what_all_by_all_finds) {
 }
 END_TEST
 
+// A row along one axis, far from the origin, with the first one off it; places without end do not count.
+START_TEST(the_axis_is_the_one_of_the_row) {
+    brunt_spread spread = {.count = 0};
+    ck_assert_int_eq(brunt_spread_axis(&spread), 0);
+    const int along = _i % 3, aside = (along + 1) % 3;
+    for (int i = 0; i < 100; i++) {
+        double x[3] = {1e9 + 0.3, 1e9 + 0.3, 1e9 + 0.3};
+        x[along] += 0.01 * (i % 2 ? i : -i); // to both sides of the first
+        x[aside] -= i == 0;
+        brunt_spread_add(&spread, x);
+    }
+    ck_assert_int_eq(brunt_spread_axis(&spread), along);
+    double endless[3] = {1e9 + 0.3, 1e9 + 0.3, 1e9 + 0.3};
+    endless[along] = _i < 3 ? INFINITY : -INFINITY;
+    brunt_spread_add(&spread, endless);
+    ck_assert_int_eq(brunt_spread_axis(&spread), along);
+}
+END_TEST
+
+// [m/s] by which cubes go up after they met a bar on which they stand in a row along an axis.
+static void bounce(int along, bool mesh, double up[3]) {
+    brunt_world_def def = def_begin(3, 0.5);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def.contact.method = mesh ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_MULTI_VELOCITY;
+    const int above = (along + 1) % 3;
+    for (int k = 0; k < 4; k++) {
+        double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+        if (k == 3) high[along] = 6;
+        if (k < 3) low[above] = mesh ? 1.001 : 1, high[above] = low[above] + 1;
+        if (k < 3) low[along] = 2.25 * k + 0.25, high[along] = low[along] + 1;
+        const char *const names[] = {"b", "c", "d", "a"};
+        brunt_body_def *b = def_box(&def, names[k], low, high);
+        if (mesh) b->method = BRUNT_FEM, b->element = BRUNT_HEX8, b->size = 0.5;
+        b->velocity[above] = k == 3 ? 0 : -1;
+    }
+    brunt_world *world = world_take(&def);
+    world_until(world, 0.12);
+    for (int k = 0; k < 3; k++) {
+        brunt_body_sums sums;
+        brunt_body_totals(world, k + 1, &sums);
+        up[k] = sums.momentum[above] / sums.mass;
+    }
+    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
+}
+
+START_TEST(a_row_meets_along_any_axis) {
+    const bool mesh = _i % 2;
+    double first[3], turned[3];
+    bounce(0, mesh, first), bounce(1 + _i / 2, mesh, turned);
+    printf("%s go up by %.3f, %.3f, %.3f m/s\n", mesh ? "meshes" : "points", first[0], first[1], first[2]);
+    for (int k = 0; k < 3; k++) {
+        ck_assert_double_gt(first[k], -0.2);
+        ck_assert_double_eq_tol(turned[k], first[k], TOLERANCE(1e-9, 1e-3));
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("many bodies");
     TCase *all = tcase_create("all");
@@ -210,6 +268,8 @@ int main(void) {
     tcase_add_test(all, a_membrane_and_itself_are_not_all);
     tcase_add_test(all, pairs_are_those_of_their_kind_or_their_own);
     tcase_add_loop_test(all, a_sweep_finds_what_all_by_all_finds, 0, 8);
+    tcase_add_loop_test(all, the_axis_is_the_one_of_the_row, 0, 6);
+    tcase_add_loop_test(all, a_row_meets_along_any_axis, 0, 4);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
