@@ -144,7 +144,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("accounts");
     TCase *all = tcase_create("all");
-    tcase_set_timeout(all, 120);
+    tcase_set_timeout(all, 0);
     tcase_add_loop_test(all, gravity_turns_a_mesh_of_many_nodes, 0, 2);
     tcase_add_loop_test(all, a_wall_pushes_where_it_is_touched, 0, 4);
     tcase_add_loop_test(all, faces_that_meet_have_their_area, 0, 4);

@@ -327,7 +327,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("convention");
     TCase *all = tcase_create("all");
-    tcase_set_timeout(all, 60);
+    tcase_set_timeout(all, 0);
     tcase_add_loop_test(all, every_kind_is_on_its_parabola, 0, 2);
     tcase_add_loop_test(all, thrown_bodies_of_each_kind_agree, 0, 2);
     tcase_add_test(all, force_is_that_of_the_kick);

@@ -326,7 +326,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("rolling");
     TCase *all = tcase_create("all");
-    tcase_set_timeout(all, 200);
+    tcase_set_timeout(all, 0);
     tcase_add_test(all, rolls_on_its_radius);
     tcase_add_test(all, rolls_alike_however_it_is_turned);
     tcase_add_test(all, rolls_in_space);
