@@ -352,6 +352,11 @@ brunt_gap_energy *brunt_contact_energy(brunt_contact_method method) {
     return NULL;
 }
 
+bool brunt_contact_pushes_planes(const brunt_contact_row *row, brunt_contact_method method) {
+    return brunt_contact_energy(method) ? row->energy && brunt_contact_is_of(row, method)
+                                        : row->energy == brunt_barrier_at;
+}
+
 bool brunt_contact_overlaps(brunt_contact_method method) {
     bool overlaps = false;
     for (int r = 0; r < brunt_contact_row_count; r++)

@@ -102,6 +102,9 @@ void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size);
 // What a method does at nodes, and its energy; NULL: none.
 brunt_node_law *brunt_contact_node_law(brunt_contact_method method);
 brunt_gap_energy *brunt_contact_energy(brunt_contact_method method);
+// Whether it is by a row that planes of condition separate push in implicit steps, where the method of all is `method`:
+// that one's, or where it has no energy the barrier.
+bool brunt_contact_pushes_planes(const brunt_contact_row *row, brunt_contact_method method);
 // Whether surfaces may overlap by a method, and whether it is of two dimensions alone.
 bool brunt_contact_overlaps(brunt_contact_method method);
 bool brunt_contact_is_planar(brunt_contact_method method);

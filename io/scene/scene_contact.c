@@ -195,13 +195,14 @@ static void check_pairs(scene_reader *reader, const scene_node *list, const scen
     brunt_named_pairs_free(&named);
 }
 
-// Whether all pairs but some, or some pairs, meet by a method of a row, which has bodies for it.
+// Whether all pairs but some, or some pairs, meet by a method of a row, which has bodies for it; or planes push by it.
 static bool uses(const brunt_world_def *world, const brunt_contact_row *row) {
     const brunt_contact_def *contact = &world->contact;
-    bool used = brunt_contact_is_of(row, contact->method), meshes = !(row->meets & BRUNT_MEET_ON_GRID);
+    bool used = brunt_contact_is_of(row, contact->method), meshes = !(row->meets & BRUNT_MEET_ON_GRID), pushes = false;
     for (int i = 0; i < contact->pair_count; i++) used |= brunt_contact_is_of(row, contact->pairs[i].method);
     for (int i = 0; i < world->body_count; i++) meshes |= world->bodies[i].method != BRUNT_MPM;
-    return used && meshes;
+    for (int i = 0; i < world->plane_count; i++) pushes |= world->planes[i].condition == BRUNT_SEPARATE;
+    return (used && meshes) || (pushes && brunt_contact_pushes_planes(row, contact->method));
 }
 
 // Whether boundaries push material points and let go, in explicit steps: how they are stopped is asked there, too.
@@ -356,7 +357,8 @@ int brunt_scene_take_values(const brunt_scene *scene, const brunt_world *world, 
     if (!contact || contact->kind != SCENE_MAP || !brunt_world_barrier(world, &v)) return BRUNT_OK;
     scene_reader reader = {.tree = tree, .units = brunt_units_open(), .dimension = scene->world.dimension};
     const bool one = v.stiffness[0] == v.stiffness[1] && v.stiffness[0] > 0;
-    const bool added = reader.units && (!(v.distance > 0) || add_number(&reader, contact, "distance", v.distance)) &&
+    const bool apart = v.distance > 0 && !(v.penalty[1] > 0); // a default of barriers: penalties beside them have none
+    const bool added = reader.units && (!apart || add_number(&reader, contact, "distance", v.distance)) &&
                        (!one || add_number(&reader, contact, "stiffness", v.stiffness[0])) &&
                        (!(v.slip_speed > 0) || add_number(&reader, contact, "slip_speed", v.slip_speed));
     if (reader.units) brunt_units_close(reader.units);

@@ -134,6 +134,31 @@ START_TEST(has_its_defaults_in_the_scene) {
 }
 END_TEST
 
+// Planes push by barriers whichever way bodies meet each other, by none as well: the keys of barriers are theirs too,
+// and what follows by default stands in the resolved scene, from which the same steps follow.
+START_TEST(planes_push_where_bodies_pass_through_each_other) {
+    small_put("floor.yaml", "brunt: 1\ndimension: 2\ntime: {scheme: implicit, end: 4 ms, step: 2 ms}\n"
+                            "grid: {cell: 0.1}\n"
+                            "materials: {soft: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.3}}\n"
+                            "bodies:\n"
+                            "  a: {method: mpm, material: soft, shape: {box: {min: [0, 0.005], max: [0.2, 0.2]}}}\n"
+                            "  b: {method: mpm, material: soft, shape: {box: {min: [0.3, 0.005], max: [0.5, 0.2]}}}\n"
+                            "boundaries:\n"
+                            "  - {plane: {point: [0, 0], normal: [0, 1]}, condition: separate, friction: 0.2}\n"
+                            "loads: {gravity: [1, -10]}\ncontact: {method: none}\noutput: {every: none}\n");
+    small_expect("run floor.yaml -o out", 0, "done");
+    ck_assert_int_eq(small_shell("grep -q '^  distance: 0.00[45]' out/scene.yaml"), 0);
+    small_expect("run out/scene.yaml -o again", 0, "done");
+    check_same_state("out", "again");
+    small_expect("check floor.yaml --quick --set contact.distance='4 mm' --set contact.stiffness='2 MPa'", 0,
+                 "  contact.distance 0.004 m, contact.stiffness 2e+06 Pa\n");
+    small_expect("check floor.yaml --quick --set contact.slip_speed='1 mm/s' --set contact.friction_iterations=2", 0,
+                 "contact.slip_speed 0.001 m/s");
+    small_expect("check floor.yaml --set contact.distance='4 mm' --set 'boundaries=[]'", 65,
+                 "contact.distance: this belongs to method: barrier");
+}
+END_TEST
+
 // Before bodies are near each other there is no gap: a least one is of the lines that have one.
 START_TEST(has_a_least_gap_from_where_there_is_one) {
     ck_assert_int_eq(
@@ -375,6 +400,7 @@ int main(void) {
     tcase_add_test(tests, says_what_it_does);
     tcase_add_test(tests, says_how_contact_is);
     tcase_add_test(tests, has_its_defaults_in_the_scene);
+    tcase_add_test(tests, planes_push_where_bodies_pass_through_each_other);
     tcase_add_test(tests, has_a_least_gap_from_where_there_is_one);
     tcase_add_test(tests, keeps_momentum);
     tcase_add_test(tests, is_the_scheme_that_is_set);

@@ -331,6 +331,27 @@ START_TEST(round_rims_are_of_penalties_in_two_dimensions) {
 }
 END_TEST
 
+// A tower of which two blocks overlap and two are kept apart. The distance is by default that of barriers; written down
+// it would be that of penalties, too, which push where they overlap: the resolved scene leaves it to the bodies.
+START_TEST(resolved_it_is_the_same_beside_barriers) {
+    small_put("tower.yaml",
+              "brunt: 1\ndimension: 2\ntime: {scheme: static, steps: 2}\n"
+              "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\nbodies:\n"
+              "  a: {method: fem, size: 2 mm, material: m, shape: {box: {min: [0, 0], max: [8 mm, 8 mm]}}}\n"
+              "  b: {method: fem, size: 2 mm, material: m, shape: {box: {min: [0, 8.1 mm], max: [8 mm, 16 mm]}}}\n"
+              "  c: {method: fem, size: 2 mm, material: m, shape: {box: {min: [0, 16.01 mm], max: [8 mm, 24 mm]}}}\n"
+              "boundaries:\n  - {body: a, group: ymin, fix: [x, y]}\n  - {body: b, group: xmin, fix: [x]}\n"
+              "  - {body: c, group: ymax, displacement: [0, -0.2 mm]}\n"
+              "contact: {method: barrier, pairs: [{between: [a, b], method: penalty}]}\n"
+              "output: {every: none}\n");
+    small_expect("run tower.yaml -t 1 -q -o out", 0, NULL);
+    small_expect("run out/scene.yaml -t 1 -q -o again", 0, NULL);
+    char *hash[2] = {hash_of("out"), hash_of("again")};
+    ck_assert_str_eq(hash[0], hash[1]);
+    for (int i = 0; i < 2; i++) free(hash[i]);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_penalty");
     TCase *tests = tcase_create("program_penalty");
@@ -345,6 +366,7 @@ int main(void) {
     tcase_add_loop_test(tests, it_does_not_matter_which_body_moves, 0, 2);
     tcase_add_test(tests, round_rims_do_not_feel_how_they_are_turned);
     tcase_add_test(tests, round_rims_are_of_penalties_in_two_dimensions);
+    tcase_add_test(tests, resolved_it_is_the_same_beside_barriers);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
