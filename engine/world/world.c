@@ -78,15 +78,27 @@ static double depth_behind(const brunt_world *world, const brunt_plane_def *plan
     return least < -(1e-3 * size + 1e-6 * far) ? -least : 0;
 }
 
-// A plane that sticks holds all that is behind it from the start, which images cannot: then nodes hold.
+// Whether a plane goes through body i: there is more than an edge of it on both sides.
+static bool goes_through(const brunt_world *world, const brunt_plane_def *plane, int i) {
+    brunt_plane_def other = *plane;
+    for (int a = 0; a < 3; a++) other.normal[a] = -plane->normal[a];
+    return depth_behind(world, plane, i) > 0 && depth_behind(world, &other, i) > 0;
+}
+
+// Images are of what is on one side alone: what goes through a plane would be its own image, and what both sides have
+// in common be lost. A plane that sticks holds all that is behind it from the start, which images cannot. Then nodes
+// hold.
 static void hold_what_is_behind(brunt_world *world) {
     brunt_boundaries *all = &world->boundaries;
     for (int k = all->symmetry_count - 1; k >= 0; k--) {
+        const brunt_symmetry_plane *symmetry = &all->symmetry[k];
         bool behind = false;
-        for (int i = 0; i < world->bodies.count && all->symmetry[k].sticks; i++)
-            behind = behind || (world->bodies.all[i].mpm &&
-                                brunt_boundary_acts_on(&all->boundary[all->symmetry[k].boundary], i) &&
-                                depth_behind(world, &all->boundary[all->symmetry[k].boundary].plane, i) > 0);
+        if (symmetry->boundary < 0) continue; // the axis of rings
+        const brunt_boundary *boundary = &all->boundary[symmetry->boundary];
+        for (int i = 0; i < world->bodies.count; i++)
+            behind = behind || (world->bodies.all[i].mpm && brunt_boundary_acts_on(boundary, i) &&
+                                (symmetry->sticks ? depth_behind(world, &boundary->plane, i) > 0
+                                                  : goes_through(world, &boundary->plane, i)));
         if (!behind) continue;
         all->has_conditions = true;
         all->boundary[all->symmetry[k].boundary].symmetry_plane = BRUNT_NONE;
