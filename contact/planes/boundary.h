@@ -33,7 +33,6 @@ typedef struct brunt_boundary_making {
     const brunt_world_def *def;
     struct brunt_boundaries *all; // boundary/boundaries.h
     struct brunt_messages *messages;
-    bool has_particles;
 } brunt_boundary_making;
 
 typedef enum brunt_boundary_value {

@@ -47,12 +47,12 @@ static bool oblique(const brunt_plane_def *plane) {
     return along > 1;
 }
 
-// Whether there is a body of elements that it acts on.
-static bool acts_on_meshes(const brunt_world_def *def, const brunt_plane_def *plane) {
+// Whether there is a body of elements, or of material points, that it acts on.
+static bool acts_on(const brunt_world_def *def, const brunt_plane_def *plane, bool meshes) {
     bool any = false;
-    for (int32_t i = 0; i < def->body_count; i++)
-        any = any ||
-              (def->bodies[i].method != BRUNT_MPM && (!plane->body[0] || !strcmp(plane->body, def->bodies[i].name)));
+    for (int32_t i = 0; i < def->body_count && !any; i++)
+        any = (def->bodies[i].method != BRUNT_MPM) == meshes &&
+              (!plane->body[0] || !strcmp(plane->body, def->bodies[i].name));
     return any;
 }
 
@@ -68,8 +68,8 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     if (brunt_solver_iterates(def->newton.solver))
         return "newton.solver: implicit steps hold material points on such a plane by tractions, for which conjugate "
                "gradients have no factor: direct or auto";
-    return acts_on_meshes(def, plane) ? "implicit steps hold nodes of meshes on planes that are normal to an axis"
-                                      : NULL;
+    return acts_on(def, plane, true) ? "implicit steps hold nodes of meshes on planes that are normal to an axis"
+                                     : NULL;
 }
 
 // ------------------------------------------------------------------------------------------ making
@@ -98,7 +98,7 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
     int axis = plane_axis(plane, def->dimension);
     double at = axis < 0 ? 0 : (plane->point[axis] - def->origin[axis]) / def->cell;
     bool on_line = axis >= 0 && !moves && fabs(at - round(at)) < ON_GRID_LINE;
-    if (!m->has_particles) { // meshes hold their nodes on any plane themselves
+    if (!acts_on(def, plane, false)) { // meshes hold their nodes on any plane themselves
         all->has_friction = all->has_friction || plane->friction > 0;
         return BRUNT_OK;
     }

@@ -10,7 +10,7 @@
 int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                           brunt_error *error) {
     brunt_boundaries *all = &world->boundaries;
-    const brunt_boundary_making m = {def, all, &world->messages, world->bodies.has_particles};
+    const brunt_boundary_making m = {def, all, &world->messages};
     all->boundary_count = brunt_boundary_entry_count(def);
     if (BRUNT_NEW(all->boundary, all->boundary_count + 1, "boundaries", error)) return BRUNT_FAILED;
     if (def->axisymmetric && world->bodies.has_particles)

@@ -175,6 +175,38 @@ START_TEST(a_body_has_its_own_loads) {
 }
 END_TEST
 
+// What a plane that acts on a mesh alone does is no matter of the grid of material points, or of whether there are any:
+// it may lie between its lines, and the mesh does the same: to the bit, in implicit steps as far as they are solved.
+START_TEST(a_plane_of_a_mesh_lies_where_it_likes) {
+    static const brunt_condition conditions[] = {BRUNT_SYMMETRY, BRUNT_SLIP, BRUNT_STICK};
+    const brunt_scheme scheme = _i % SCHEMES ? BRUNT_IMPLICIT : BRUNT_EXPLICIT;
+    double *place[2];
+    for (int points = 0; points < 2; points++) {
+        brunt_world_def def = def_begin(2, 0.25);
+        def.scheme = scheme, def.step = 1e-3;
+        def.newton.tolerance = 1e-10;
+        def.contact.method = BRUNT_CONTACT_NONE;
+        def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+        brunt_body_def *mesh = def_box(&def, "mesh", XYZ(0, 0.1, 0), XYZ(1, 1.1, 0));
+        mesh->method = BRUNT_FEM, mesh->element = BRUNT_QUAD4, mesh->size = 0.5;
+        def_velocity(mesh, 0.5, -1, 0);
+        if (points) def_box(&def, "points", XYZ(0, -1, 0), XYZ(1, -0.5, 0)); // behind the plane, which is not theirs
+        brunt_plane_def *plane = def_plane(&def, XYZ(0, 0.1, 0), XYZ(0, 1, 0), conditions[_i / SCHEMES], 0);
+        snprintf(plane->body, sizeof plane->body, "mesh");
+        brunt_world *world = world_take(&def);
+        world_steps(world, 10);
+        place[points] = world_field(world, 0, "position");
+        for (int n = 0; n < 9; n++)
+            ck_assert(place[points][3 * n + 1] >= 0.1 - ROUNDING && place[points][3 * n + 1] < 1.1);
+        brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
+    for (int k = 0; k < 27; k++)
+        ck_assert_double_le(fabs(place[0][k] - place[1][k]), scheme == BRUNT_EXPLICIT ? 0 : 1e-12);
+    for (int k = 0; k < 2; k++) free(place[k]);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("many boundaries");
     TCase *all = tcase_create("all");
@@ -183,6 +215,7 @@ int main(void) {
     tcase_add_loop_test(all, the_first_of_many_groups_holds, 0, SCHEMES);
     tcase_add_test(all, a_body_looks_at_its_own_boundaries);
     tcase_add_test(all, a_body_has_its_own_loads);
+    tcase_add_loop_test(all, a_plane_of_a_mesh_lies_where_it_likes, 0, 3 * SCHEMES);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
