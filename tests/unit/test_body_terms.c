@@ -282,6 +282,43 @@ START_TEST(membranes) {
 }
 END_TEST
 
+// Bodies of one mesh have one Hessian times a number where they are as large and of one shape, and of one material but
+// for its stiffness; in two dimensions as well where they are not as large. That of a body that is held is not its own.
+START_TEST(hessians_of_bodies_alike) {
+    static const double across[] = {1, 1, 3, 1.2};
+    static const double tall[] = {1, 1, 3, 1};
+    static const double wanted[] = {1, 2.5, 1, 0};
+    brunt_fem_body body[4];
+    brunt_fem_potential *p[4];
+    brunt_error error;
+    for (int k = 0; k < 4; k++) {
+        brunt_mesh mesh = box_mesh(BRUNT_TRI3, 2, 1, 0, false);
+        for (int32_t n = 0; n < mesh.node_count; n++) mesh.nodes[n][0] *= across[k], mesh.nodes[n][1] *= tall[k];
+        brunt_material_def law = brunt_material_def_default("m", "linear-elastic");
+        brunt_material_set(&law, "density", fem_density, NULL, &error);
+        brunt_material_set(&law, "E", k == 1 ? 2.5 * fem_E : fem_E, NULL, &error);
+        brunt_material_set(&law, "nu", fem_nu, NULL, &error);
+        brunt_material material;
+        ck_assert_int_eq(brunt_material_make(&law, &material, &error), BRUNT_OK);
+        brunt_body_def def = brunt_body_def_default();
+        snprintf(def.name, sizeof def.name, "b");
+        def.hourglass_coefficient = NAN;
+        ck_assert_int_eq(brunt_fem_make(&def, &material, 2, &mesh, &body[k], &error), BRUNT_OK);
+        brunt_mesh_free(&mesh);
+        p[k] = brunt_fem_potential_make(&body[k], 0, &one, &error);
+        ck_assert_ptr_nonnull(p[k]);
+        ck_assert(brunt_fem_hessian_stays(p[k]));
+        brunt_fem_hessian_rest(p[k], &one);
+        ck_assert_double_eq_tol(brunt_fem_hessian_over(p[k], p[0]), wanted[k], 1e-9);
+    }
+    uint8_t held[9] = {1};
+    body[0].held = held;
+    ck_assert(!brunt_fem_hessian_stays(p[0]));
+    body[0].held = NULL;
+    for (int k = 0; k < 4; k++) brunt_fem_potential_free(p[k]), brunt_fem_free(&body[k]);
+}
+END_TEST
+
 // A box of points that has been cut by no lattice: sorted, on its grid.
 static brunt_world *points_world(int dim, int kernel, brunt_transfer transfer) {
     brunt_world_def def = def_begin(dim, 0.1);
@@ -439,6 +476,7 @@ int main(void) {
         ADD_LOOP(elements, 8);
         ADD_LOOP(membranes, 18);
         ADD_LOOP(points, 22);
+        ADD_LOOP(hessians_of_bodies_alike, 1);
     }
     return suite_main(suite);
 }
