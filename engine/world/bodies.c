@@ -35,13 +35,14 @@ void brunt_start_motion(const brunt_body_def *def, int dim, const double x[3], d
     }
 }
 
-// How far a particle reaches that is at a distance from the body's surface. What is inside a fluid comes to its surface
-// later, and so does what is inside a body that erodes: there is a particle's own material about it, no more. Of a body
-// that erodes those in the outermost layer keep their distance: it says where the surface is that there is now.
+// How far a particle reaches that is at a distance from the body's surface, which is told up to half the diagonal of
+// its cell (geometry/fill.h). What is inside a fluid comes to its surface later, and so does what is inside a body that
+// erodes: there is a particle's own material about it, no more. Of a body that erodes those in the outermost layer keep
+// their distance: it says where the surface is that there is now.
 static double particle_extent(const brunt_body *body, double distance) {
-    const double own = 0.5 * body->spacing;
+    const double own = 0.5 * body->spacing, told = own * sqrt(body->particles.dim);
     if (body->material.model[BRUNT_STRENGTH]->fluid) return fmin(distance, own);
-    return body->erodes && distance > body->spacing ? own : distance;
+    return body->erodes && distance >= (1 - 1e-6) * told ? own : distance;
 }
 
 static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brunt_body *body, brunt_error *error) {

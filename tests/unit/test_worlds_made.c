@@ -1,6 +1,9 @@
-// What becomes of a definition: nodes of meshes, motion at the start, how warm particles are, which
+// What becomes of a definition: nodes of meshes, motion at the start, what particles reach and how warm they are, which
 // bodies lie in each other or behind planes of symmetry, what pairs rub by, and scenes far from the origin.
 #include "tests/support/def_world.h"
+
+#include "mpm/particles.h"
+#include "world/world.h"
 
 static brunt_world_def begin(int dimension) {
     brunt_world_def def = def_begin(dimension, 0.25);
@@ -60,6 +63,28 @@ START_TEST(the_axis_does_not_move_outward) {
         ck_assert_int_eq(on_axis, 3);
         free(x), free(v);
         world_steps(world, 5);
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Half a spacing is what a particle of a fluid reaches, and one inside a body that erodes; else it reaches the surface.
+// Those in the outermost layer, half a spacing below it, are alike.
+START_TEST(particles_reach_what_is_theirs) {
+    brunt_world_def def = begin(2);
+    brunt_body_def *body = def_box(&def, "block", XYZ(0, 0, 0), XYZ(2, 2, 0));
+    body->spacing = 0.1;
+    if (_i) body->erosion.strain = 0.5;
+    def_box(&def, "other", XYZ(5, 0, 0), XYZ(6, 1, 0)); // it may meet one
+    brunt_world *world = world_take(&def);
+    brunt_particles *p = &world->bodies.mpm[0].particles;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position), *reach = brunt_field(p, BRUNT_FIELD_reach)[0];
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        double deep = INFINITY; // reaches end at the corner of a particle's own square
+        for (int a = 0; a < 2; a++) deep = fmin(deep, fmin((double)x[a][s], 2 - (double)x[a][s]));
+        const double wanted = _i && deep > 0.11 ? 0.05 : fmin(deep, 0.05 * sqrt(2));
+        ck_assert_double_eq_tol((double)reach[s], wanted, 1e-6);
     }
     brunt_world_destroy(world);
 }
@@ -167,6 +192,7 @@ int main(void) {
     Suite *suite = suite_create("worlds made");
     ADD_LOOP(nodes_without_elements_are_left_out, 1);
     ADD_LOOP(the_axis_does_not_move_outward, 2);
+    ADD_LOOP(particles_reach_what_is_theirs, 2);
     ADD_LOOP(points_are_as_warm_as_their_body, 2);
     ADD_LOOP(what_overlaps_is_seen_where_it_is_turned_to, 2);
     ADD_LOOP(bodies_end_at_planes_of_symmetry, 4);
