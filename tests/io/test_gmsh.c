@@ -221,6 +221,34 @@ START_TEST(every_kind_in_every_format) {
 }
 END_TEST
 
+// A body whose every element is inside out is turned over as a whole, whatever it is made of.
+START_TEST(bodies_inside_out_are_turned_over) {
+    static const struct {
+        brunt_element_kind kind;
+        int swap[2][2];
+    } cases[] = {{BRUNT_TRI3, {{1, 2}, {0, 0}}},
+                 {BRUNT_QUAD4, {{1, 3}, {0, 0}}},
+                 {BRUNT_TET4, {{1, 2}, {0, 0}}},
+                 {BRUNT_HEX8, {{1, 3}, {5, 7}}}};
+    const brunt_shape box = {.kind = BRUNT_BOX, .max = {1, 0.5, 0.7}};
+    const int dimension = brunt_element_dimension(cases[_i].kind), nodes = brunt_element_nodes(cases[_i].kind);
+    brunt_mesh right, wrong;
+    ck_assert_int_eq(brunt_mesh_shape(&box, dimension, cases[_i].kind, 0.25, &right, NULL), 0);
+    ck_assert_int_eq(brunt_mesh_shape(&box, dimension, cases[_i].kind, 0.25, &wrong, NULL), 0);
+    for (int32_t e = 0; e < wrong.element_count; e++)
+        for (int k = 0; k < 2; k++) {
+            int32_t *p = &wrong.elements[e * nodes + cases[_i].swap[k][0]],
+                    *q = &wrong.elements[e * nodes + cases[_i].swap[k][1]], keep = *p;
+            *p = *q, *q = keep;
+        }
+    gmsh_model m = model_of(&wrong, NULL);
+    gmsh_write(path, &m, 4, 1);
+    brunt_mesh back = read_from(path, "body", dimension, NULL);
+    expect_same(&back, &right);
+    brunt_mesh_free(&back), brunt_mesh_free(&right), brunt_mesh_free(&wrong);
+}
+END_TEST
+
 // ---------------------------------------------------------------------------------------------------- which elements
 
 static double square[][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}, {9, 9, 0}, {8, 8, 0}};
@@ -727,6 +755,7 @@ int main(void) {
     tcase_add_test(tests, disks_of_gmsh);
     tcase_add_test(tests, facets_of_gmsh);
     tcase_add_test(tests, every_kind_in_every_format);
+    tcase_add_loop_test(tests, bodies_inside_out_are_turned_over, 0, 4);
     tcase_add_test(tests, bodies_are_physical_groups);
     tcase_add_test(tests, membranes_are_surfaces_in_space);
     tcase_add_test(tests, groups_that_cannot_be_are_said);

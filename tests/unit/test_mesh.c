@@ -633,8 +633,9 @@ START_TEST(duplicate_and_unreferenced_nodes_are_counted) {
         both.elements = brunt_alloc((size_t)(2 * e) * 8 * sizeof *both.elements);
         for (int32_t i = 0; i < n; i++)
             for (int d = 0; d < 3; d++) {
-                both.nodes[i][d] = one.nodes[i][d];
-                both.nodes[n + i][d] = one.nodes[i][d] + (d == 0 ? 1 : 0) + shifts[s];
+                const double odd = sqrt(2) / 10 * (d + 1); // on no line of a grid
+                both.nodes[i][d] = one.nodes[i][d] + odd;
+                both.nodes[n + i][d] = one.nodes[i][d] + odd + (d == 0 ? 1 : 0) + shifts[s];
             }
         for (int32_t i = 0; i < 8 * e; i++)
             both.elements[i] = one.elements[i], both.elements[8 * e + i] = one.elements[i] + n;

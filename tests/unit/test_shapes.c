@@ -309,7 +309,7 @@ START_TEST(jitter_is_deterministic) {
     ck_assert_int_eq(regular.count, first.count);
     ck_assert_int_eq(first.count, other.count);
     double square = 0, mean = 0;
-    int32_t differing = 0;
+    int32_t differing = 0, moved = 0;
     for (int i = 0; i < 3; i++) {
         ck_assert_mem_eq(first.position[i], again.position[i], (size_t)first.count * sizeof(double));
         for (int32_t p = 0; p < first.count; p++) {
@@ -318,10 +318,12 @@ START_TEST(jitter_is_deterministic) {
             mean += shift;
             square += shift * shift;
             differing += first.position[i][p] != other.position[i][p];
+            moved += shift != 0;
         }
     }
     int32_t samples = 3 * first.count;
     ck_assert_int_gt(differing, samples * 9 / 10);
+    ck_assert_int_gt(moved, samples * 99 / 100); // beside the surface by less
     // Uniform in +-0.4: variance 0.4^2/3 less what the surface takes; the mean of 12,000 is within five standard
     // errors.
     ck_assert_double_eq_tol(square / samples, 0.16 / 3, 0.15 * 0.16 / 3);
@@ -364,6 +366,7 @@ START_TEST(rings_fill_a_disk) {
         middle[0] += x, middle[1] += y;
         farthest = fmax(farthest, hypot(x, y));
         below += fabs(x) < 1e-12 && y < 0;
+        ck_assert_double_eq_tol(filled.reach[n], fmin(1 - hypot(x, y), 0.05 * sqrt(2)), 1e-14);
     }
     ck_assert_int_eq(below, 9);
     ck_assert_double_eq_tol(farthest, 1 - 0.5 / 9, 1e-14);
