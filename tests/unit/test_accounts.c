@@ -2,6 +2,8 @@
 // What the accounts say of what acts on bodies: moments about the origin, and the area that touches.
 #include "tests/support/def_world.h"
 
+#include "world/world.h"
+
 static brunt_body_def *mesh(brunt_body_def *body, int dimension, double size) {
     body->method = BRUNT_FEM, body->element = dimension == 3 ? BRUNT_HEX8 : BRUNT_QUAD4, body->size = size;
     return body;
@@ -58,6 +60,28 @@ START_TEST(a_wall_pushes_where_it_is_touched) {
         ck_assert_double_eq_tol(m.linear[a] - m.linear_initial[a], a == 1 ? push : 0, near);
         ck_assert_double_eq_tol(m.angular[a] - m.angular_initial[a], m.angular_impulse[a], near);
     }
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block that one plane pushes against another, which gives way: what the first puts in the second takes out, and the
+// error of the balance is measured against both.
+START_TEST(work_that_cancels_is_a_measure) {
+    brunt_world_def def = def_begin(2, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    mesh(def_box(&def, "block", XYZ(0.001, 0, 0), XYZ(0.999, 1, 0)), 2, 0.25);
+    def_plane(&def, XYZ(0, 0, 0), XYZ(1, 0, 0), BRUNT_SEPARATE, 0)->velocity[0] = 2;
+    def_plane(&def, XYZ(1, 0, 0), XYZ(-1, 0, 0), BRUNT_SEPARATE, 0)->velocity[0] = 1;
+    brunt_world *world = world_take(&def);
+    world_until(world, 0.1);
+    double work[2], given = 0;
+    for (int w = 0; w < 2; w++) {
+        work[w] = world->boundaries.boundary[w].account.external_work;
+        given += fabs(work[w]);
+    }
+    ck_assert_double_gt(work[0], 100);
+    ck_assert_double_lt(work[1], -100);
+    ck_assert_double_ge(world_energy(world).reference, given * (1 - TOLERANCE(1e-12, 1e-6)));
     brunt_world_destroy(world);
 }
 END_TEST
@@ -147,6 +171,7 @@ int main(void) {
     tcase_set_timeout(all, 0);
     tcase_add_loop_test(all, gravity_turns_a_mesh_of_many_nodes, 0, 2);
     tcase_add_loop_test(all, a_wall_pushes_where_it_is_touched, 0, 4);
+    tcase_add_test(all, work_that_cancels_is_a_measure);
     tcase_add_loop_test(all, faces_that_meet_have_their_area, 0, 4);
     tcase_add_loop_test(all, an_edge_has_what_is_beside_it, 0, 4);
     tcase_add_loop_test(all, bodies_that_are_summed_up_at_once_have_the_same_sums, 0, 4);
