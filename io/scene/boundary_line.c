@@ -43,6 +43,7 @@ static void fill_mesh(scene_reader *reader, const scene_node *mesh, brunt_bounda
         brunt_tree_complain(reader->tree, group ? group : file, "%s", error.message);
         return;
     }
+    brunt_scale_places(mesh, "unit", facets.points, facets.point_count);
     def->point = facets.points, def->point_count = facets.point_count;
     def->facet = facets.corners, def->facet_count = facets.count;
     for (int32_t f = 0; f < def->facet_count && brunt_real_of(mesh, "reversed", 0) != 0; f++) {

@@ -198,6 +198,12 @@ bool brunt_find_mesh(scene_reader *reader, scene_node *node, char path[BRUNT_SCE
     return found;
 }
 
+void brunt_scale_places(const scene_node *node, const char *key, double (*x)[3], int32_t count) {
+    const double unit = brunt_real_of(node, key, 1);
+    for (int32_t n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++) x[n][a] *= unit;
+}
+
 // True when the body has elements whose kind is known.
 static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *body) {
     scene_node *mesh = brunt_tree_child(node, "mesh");
@@ -215,6 +221,8 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
         brunt_tree_complain(reader->tree, mesh, "%s", error.message);
         return false;
     }
+    if (!brunt_tree_child(node, "mesh_unit")) brunt_add_default(reader, node, "mesh_unit", "1 m");
+    brunt_scale_places(node, "mesh_unit", body->mesh.nodes, body->mesh.node_count);
     body->element = body->mesh.kind;
     return true;
 }
@@ -224,6 +232,7 @@ static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def
     int dimension = reader->dimension;
     const bool membrane = body->method == BRUNT_MEMBRANE;
     brunt_refuse_key(reader, node, "group", "this belongs to a mesh file, none is given");
+    brunt_refuse_key(reader, node, "mesh_unit", "this belongs to a mesh file, none is given");
     if (!kind && dimension)
         kind = brunt_add_default(reader, node, "element", dimension == 2 || membrane ? "quad4" : "hex8");
     const brunt_element_kind solid = kind && kind->good ? brunt_element_named(kind->text) : BRUNT_HEX8;

@@ -146,6 +146,7 @@ static void fill_cells(scene_reader *reader, const scene_node *grid) {
     else if (world->background.kind != BRUNT_TRI3)
         brunt_tree_complain(reader->tree, mesh, "its elements are of kind %s, tri3 is wanted",
                             brunt_element_name(world->background.kind));
+    brunt_scale_places(cells, "unit", world->background.nodes, world->background.node_count);
 }
 
 // The word alone and the map with its default are the same: the resolved scene has the map.

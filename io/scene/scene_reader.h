@@ -68,6 +68,8 @@ enum { BRUNT_SCENE_PATH = 4096 };
 // A path counts from the folder of the scene; the resolved scene, which lies elsewhere, has the whole path. Whether
 // there is a file to read.
 bool brunt_find_mesh(scene_reader *reader, scene_node *node, char path[BRUNT_SCENE_PATH]);
+// Places of a file in metres, by the length that `key` says 1 stands for in it.
+void brunt_scale_places(const scene_node *node, const char *key, double (*places)[3], int32_t count);
 bool brunt_nonzero(const double v[3]);
 // Says that `node` names nothing in the section `parent`, with the nearest name or all there are.
 void brunt_complain_name(scene_reader *reader, const scene_node *node, const char *what, const char *parent);

@@ -246,8 +246,8 @@ START_TEST(every_key_with_a_number_is_swept) {
         bool found = false;
         for (int t = 0; t < TEXTS; t++) found = found || strstr(texts[t], key);
         // Not beside what the scenes have in its place.
-        static const char *const others[] = {"time.step", "bodies.*.spin.axis"};
-        for (int o = 0; o < 2; o++) found = found || !strcmp(row->path, others[o]);
+        static const char *const others[] = {"time.step", "bodies.*.spin.axis", "bodies.*.mesh_unit"};
+        for (int o = 0; o < 3; o++) found = found || !strcmp(row->path, others[o]);
         ck_assert_msg(found, "no number is tried at %s", row->path);
     }
 }

@@ -263,6 +263,11 @@ START_TEST(mesh_files_of_boundaries_and_grid) {
     small_write(small_path("moves.yaml"), moves, sizeof moves - 1);
     shell(0, "$P run falls.yaml -o f -q -t 1 && $P run falls.yaml -o f --resume -q -t 1 --set time.end=0.006");
     shell(0, "$P run moves.yaml -o m -q -t 1 && $P run moves.yaml -o m --resume -q -t 1 --set time.end=0.006");
+    // The same cells in a file of millimetres.
+    shell(0, "sed 's/^\\([1-4]\\) \\(-*[13]\\) \\(-*[13]\\) 0$/\\1 \\2000 \\3000 0/' cells.msh > mm.msh && grep -q '^3 "
+             "3000 3000 0' mm.msh");
+    shell(0, "sed 's/cells.msh/mm.msh, unit: 1 mm/' moves.yaml > mm.yaml && $P run mm.yaml -o mm -q -t 1 && "
+             "$P run moves.yaml -o m2 -q -t 1 && diff mm/history.csv m2/history.csv");
     shell(0, "sed -i 's/^3 0 3 0/3 0.001 3 0/' plane.msh && sed -i 's/^3 3 3 0/3 3.5 3.5 0/' cells.msh");
     contains(shell(65, "$P run falls.yaml -o f --resume -q -t 1 --set time.end=0.008"), "a mesh file has changed");
     contains(shell(65, "$P run moves.yaml -o m --resume -q -t 1 --set time.end=0.008"), "a mesh file has changed");

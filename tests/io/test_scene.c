@@ -419,6 +419,28 @@ START_TEST(groups) {
 }
 END_TEST
 
+// Coordinates of a body, of a surface and of cells times what 1 stands for in their files.
+static void meshes_in_millimetres(const char *name, const char *scene) {
+    brunt_scene s;
+    const char *body = "bodies.b.mesh_unit=1 mm",
+               *shape = "bodies.b={method: fem, material: m, element: hex8, size: 1,"
+                        " shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, mesh_unit: 1 mm}";
+    ck_assert_msg(parse_file(name, scene, &body, 1, &s) == BRUNT_OK, "%s", messages);
+    NEAR(s.world.bodies[0].mesh.nodes[1][0], 1e-3);
+    NEAR(s.world.bodies[0].mesh.nodes[4][2], 1e-3);
+    char *text = write_text(&s);
+    ck_assert(strstr(text, "mesh_unit: 0.001\n") != NULL);
+    brunt_scene_free(&s), free(text);
+    ck_assert_int_eq(parse_file(name, scene, &shape, 1, &s), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(messages, "mesh_unit: this belongs to a mesh file"), "%s", messages);
+    const char *surface[] = {"grid={cell: 0.1}",
+                             "boundaries=[{mesh: {file: two.msh, group: left face, unit: 2 cm}, condition: separate}]",
+                             "bodies.b={method: mpm, material: m, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}}"};
+    ck_assert_msg(parse_file(name, scene, surface, 3, &s) == BRUNT_OK, "%s", messages);
+    NEAR(s.world.surfaces[0].point[1][1], 0.02);
+    brunt_scene_free(&s);
+}
+
 // A cube of two tetrahedra beside the scene: found from the scene's folder, whole path in the resolved scene.
 START_TEST(mesh_files) {
     char folder[] = "/tmp/brunt_scene_XXXXXX", path[128], scene[512], wanted[160];
@@ -481,6 +503,7 @@ START_TEST(mesh_files) {
     }
     const char *other = "bodies.b.group=shell";
     ck_assert_int_eq(brunt_scene_parse(scene, strlen(scene), name, &other, 1, &s, NULL), BRUNT_BAD_INPUT);
+    meshes_in_millimetres(name, scene);
     remove(path);
     remove(folder);
     ck_assert_uint_eq(brunt_memory_live(), 0);
