@@ -555,7 +555,7 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     if (status && guesses) brunt_implicit_contact_widen(&m->contact, 0);
     if (status) return withdraw(world, step->dt, &sum, &report, error);
     balance_sums(m);
-    sum.steps = 1;
+    sum.steps = 1, sum.residual = m->tried.residual; // not that of a try that was given up
     m->tried = sum;
     if (m->rubs && m->rubs_late) world->clock.rubs_late = 1;
     step->dt = step->kick = m->dt;

@@ -97,6 +97,17 @@ static json_t *eroded_of(brunt_world *world) {
     return bodies;
 }
 
+// [kg] that mass scaling has added to each body that has it.
+static json_t *added_mass_of(const brunt_world *world) {
+    json_t *bodies = json_object();
+    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+        brunt_mesh_report report = {.scaled_elements = 0};
+        if (brunt_body_method(world, b) != BRUNT_MPM) brunt_body_mesh(world, b, &report);
+        if (report.scaled_elements) json_object_set_new(bodies, brunt_body_name(world, b), number(report.added_mass));
+    }
+    return bodies;
+}
+
 static json_t *momentum_of(brunt_world *world) {
     brunt_momentum m;
     brunt_world_momentum(world, &m);
@@ -264,6 +275,7 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "energy", energy_of(world));
     if (!brunt_world_static(world)) json_object_set_new(o, "momentum", momentum_of(world));
     json_object_set_new(o, "eroded", eroded_of(world));
+    json_object_set_new(o, "added_mass", added_mass_of(world));
     set_newton(o, world);
     json_t *boundaries = boundaries_of(world);
     if (boundaries) json_object_set_new(o, "boundaries", boundaries);
@@ -331,6 +343,36 @@ static void print_eroded(brunt_world *world, brunt_console *console) {
         if (e.nodes) brunt_console_print(console, ", %lld nodes", (long long)e.nodes);
         brunt_console_print(console, "; %.4g kg and %.4g J left\n", e.mass, e.energy);
     }
+}
+
+static void print_added_mass(brunt_world *world, brunt_console *console) {
+    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+        brunt_mesh_report report = {.scaled_elements = 0};
+        brunt_body_sums sums;
+        if (brunt_body_method(world, b) != BRUNT_MPM) brunt_body_mesh(world, b, &report);
+        if (!report.scaled_elements) continue;
+        brunt_body_totals(world, b, &sums);
+        brunt_console_print(console, "mass scaling of %s: %lld elements made denser, %.4g kg added, of %.4g kg now\n",
+                            brunt_body_name(world, b), (long long)report.scaled_elements, report.added_mass, sums.mass);
+    }
+}
+
+// Where a share of the energy says that bodies may have moved in another way than they would.
+static void print_notes(brunt_world *world, brunt_console *console) {
+    static const double hourglass = 0.1, contact = 0.03; // [-] of what bodies store, and flow has taken
+    brunt_energy e;
+    brunt_world_energy(world, &e);
+    const double taken = e.internal + e.plastic, least = 1e-3 * e.reference;
+    if (e.hourglass > fmax(hourglass * taken, least))
+        brunt_console_print(console,
+                            "note: hourglass modes have %.3g %% of what is stored and flow has taken, more than %.3g "
+                            "%%: smaller elements, or hourglass.form: stiffness, let them have less\n",
+                            100 * e.hourglass / taken, 100 * hourglass);
+    if (brunt_world_newton(world, &(brunt_newton_counts){0}, NULL) && e.contact > fmax(contact * taken, least))
+        brunt_console_print(console,
+                            "note: what pushes surfaces apart has stored %.3g %% of what bodies have, more than %.3g "
+                            "%%: with a smaller contact.distance, or a greater contact.penalty, they come nearer\n",
+                            100 * e.contact / taken, 100 * contact);
 }
 
 static void print_links(brunt_world *world, brunt_console *console) {
@@ -434,6 +476,8 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_rate(console, (double)brunt_world_particles(world), steps, s->step_seconds, "particle");
     print_rate(console, (double)brunt_world_elements(world), steps, s->step_seconds, "element");
     print_energy(world, console);
+    print_notes(world, console);
+    print_added_mass(world, console);
     print_eroded(world, console);
     print_newton(world, console);
     print_balance(world, console);

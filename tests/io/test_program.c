@@ -321,6 +321,7 @@ START_TEST(summary_has_exactly_the_promised_names) {
                                         "energy",
                                         "momentum",
                                         "eroded",
+                                        "added_mass",
                                         "measures"};
     static const char *const energy[] = {"initial",   "final",   "kinetic",       "internal",  "plastic",
                                          "hourglass", "contact", "friction",      "viscosity", "transfer",

@@ -173,9 +173,10 @@ typedef struct brunt_newton_counts {
     double halvings;                            // of a Newton step, in its line search
     double projections;                         // matrices without their negative eigenvalues
     double linear_iterations, factorisations;
-    double cuts;       // steps that were taken anew, half as long
-    double residual;   // [m/s] greatest last correction of a step; static: [-] greatest share of forces left unbalanced
-    double least_gap;  // [m] at the end of a step; INFINITY: nothing has been near
+    double cuts;      // steps that were taken anew, half as long
+    double residual;  // [m/s] greatest last correction of a step; static: [-] greatest share of forces left unbalanced;
+                      // of steps that were taken, not of those that were given up
+    double least_gap; // [m] at the end of a step; INFINITY: nothing has been near
     double least_part; // [-] of the distance at which surfaces know of each other, likewise
 } brunt_newton_counts;
 // So far, and of the last step (NULL: not wanted). False in explicit schemes, where all numbers are 0.
