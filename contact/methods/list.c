@@ -1,5 +1,6 @@
 #include "base/array.h"
 #include "contact/methods/method.h"
+#include "contact/planes/condition.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -51,6 +52,18 @@ static void account_on_grid(const brunt_contact_context *m, const brunt_contact_
 static void free_on_grid(void *memory) { brunt_surface_on_grid_free(memory); }
 static void validate_on_grid(const void *memory) { brunt_surface_on_grid_validate(memory); }
 
+// Those planes that hold nodes come before those that push them: what is held is not free to be pushed or rubbed.
+static int meet_planes(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
+    for (int pushing = 0; pushing < 2; pushing++)
+        for (int w = 0; w < m->boundary_count; w++) {
+            brunt_boundary *b = &m->boundaries[w];
+            if (b->kind->meet_surface && brunt_boundary_pushes(b) == pushing &&
+                b->kind->meet_surface(m, b, *work->node_to_facet, work->constraints, error))
+                return BRUNT_FAILED;
+        }
+    return BRUNT_OK;
+}
+
 // Constraints at facets, and those at planes, which any surface may meet: solved together.
 static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
     brunt_constraint_set *set = work->constraints;
@@ -62,10 +75,7 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
     set->leap = BRUNT_LEAP * m->surface->mean_edge / m->dt;
     set->shallow = BRUNT_SHALLOW * m->surface->mean_edge;
     if (set->gives_back && brunt_node_touches_make(facets, m->surface->node_count, error)) return BRUNT_FAILED;
-    for (int w = 0; w < m->boundary_count; w++)
-        if (m->boundaries[w].kind->meet_surface &&
-            m->boundaries[w].kind->meet_surface(m, &m->boundaries[w], facets, set, error))
-            return BRUNT_FAILED;
+    if (meet_planes(m, work, error)) return BRUNT_FAILED;
     if (work->facets && brunt_node_to_facet_find(m, m->mpm, m->mpm_count, facets, set, error)) return BRUNT_FAILED;
     if (brunt_constraints_solve(set, work->sweeps, work->def->tolerance, m->threads, m->timer, error))
         return BRUNT_FAILED;

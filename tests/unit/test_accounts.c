@@ -165,6 +165,44 @@ START_TEST(bodies_that_are_summed_up_at_once_have_the_same_sums) {
 }
 END_TEST
 
+// A block that comes down into a corner of a plane that pushes and rubs and one that holds, in three dimensions, where
+// what rubs along the one that holds would take from Coulomb's bound: which of them is given first is nothing to it.
+START_TEST(what_is_held_is_not_rubbed) {
+    static const brunt_condition conditions[] = {BRUNT_SLIP, BRUNT_SYMMETRY, BRUNT_STICK};
+    brunt_energy energy[2];
+    double impulse[2][2][3];
+    for (int swap = 0; swap < 2; swap++) {
+        brunt_world_def def = def_begin(3, 0);
+        def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+        brunt_body_def *body = def_box(&def, "block", XYZ(0, 0, 0), XYZ(1, 1, 1));
+        body->method = BRUNT_FEM, body->element = BRUNT_HEX8, body->size = 0.5;
+        def_velocity(body, -1, 0.5, -3);
+        for (int k = 0; k < 2; k++) {
+            if (k == swap)
+                def_plane(&def, XYZ(0, 0, 0), XYZ(0, 0, 1), BRUNT_SEPARATE, 0.3);
+            else
+                def_plane(&def, XYZ(0, 0, 0), XYZ(1, 0, 0), conditions[_i], 0);
+        }
+        def.step = 5e-4;
+        brunt_world *world = world_take(&def);
+        world_steps(world, 40);
+        energy[swap] = world_energy(world);
+        for (int k = 0; k < 2; k++)
+            memcpy(impulse[swap][k == swap], world_boundary(world, k).impulse, sizeof impulse[0][0]);
+        brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
+    const double all = energy[0].initial, mass = 1000;
+    ck_assert_double_gt(energy[0].friction, 1e-3 * all);
+    for (int swap = 0; swap < 2; swap++) ck_assert_double_lt(fabs(energy[swap].error), 2e-4 * all);
+    ck_assert_double_le(fabs(energy[1].friction - energy[0].friction), 100 * ROUNDING * all);
+    ck_assert_double_le(fabs(energy[1].kinetic - energy[0].kinetic), 100 * ROUNDING * all);
+    for (int k = 0; k < 2; k++)
+        for (int a = 0; a < 3; a++)
+            ck_assert_double_le(fabs(impulse[1][k][a] - impulse[0][k][a]), 100 * ROUNDING * mass);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("accounts");
     TCase *all = tcase_create("all");
@@ -175,6 +213,7 @@ int main(void) {
     tcase_add_loop_test(all, faces_that_meet_have_their_area, 0, 4);
     tcase_add_loop_test(all, an_edge_has_what_is_beside_it, 0, 4);
     tcase_add_loop_test(all, bodies_that_are_summed_up_at_once_have_the_same_sums, 0, 4);
+    tcase_add_loop_test(all, what_is_held_is_not_rubbed, 0, 3);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
