@@ -59,6 +59,8 @@ START_TEST(what_has_happened_is_taken_up) {
     const brunt_momentum p = world_momentum(old), q = world_momentum(other);
     const brunt_reaction pair = world_pair(old, 0), plane = world_boundary(old, 0), pair_there = world_pair(other, 0),
                          plane_there = world_boundary(other, 0);
+    ck_assert_double_lt(p.linear_drift, ROUNDING);
+    ck_assert_double_lt(p.angular_drift, ROUNDING);
     ck_assert_double_gt(e.heat, 1);
     ck_assert_double_gt(e.viscosity, 1);
     ck_assert_double_gt(fabs(p.angular_impulse[2]), 1);

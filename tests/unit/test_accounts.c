@@ -86,6 +86,75 @@ START_TEST(work_that_cancels_is_a_measure) {
 }
 END_TEST
 
+// What a plane gives a block is the sum of tractions over the block's sides: in the plane each node has an edge's
+// length of them, the corners half of that below and half beside.
+START_TEST(tractions_add_up_to_the_force) {
+    const double size = 0.25;
+    brunt_world_def def = def_begin(2, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def_velocity(mesh(def_box(&def, "block", XYZ(0, 1e-4, 0), XYZ(1, 1, 0)), 2, size), 0, -1, 0);
+    def.bodies[0].shape.max[1] = 1 + 1e-4;
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    def.step = 4e-4;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    const double force = world_boundary(world, 0).force[1];
+    double *x = world_field(world, 0, "position"), *traction = world_field(world, 0, "contact_traction"), sum = 0;
+    for (int64_t n = 0; n < brunt_body_nodes(world, 0); n++) {
+        if (x[3 * n + 1] > 0.1) ck_assert_double_eq(traction[3 * n + 1], 0);
+        sum += size * traction[3 * n + 1];
+    }
+    ck_assert_double_gt(force, 1e3);
+    ck_assert_double_eq_tol(sum, force, TOLERANCE(1e-10, 1e-4) * force);
+    free(x), free(traction);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block that rests on a plane under its weight loses nothing to it, whatever each step's gravity is borne by.
+START_TEST(what_rests_loses_nothing_in_contact) {
+    brunt_world_def def = def_begin(2, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    mesh(def_box(&def, "block", XYZ(0, 0, 0), XYZ(1, 1, 0)), 2, 0.5);
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    def.gravity[1] = -10;
+    def.step = 1e-3;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 50);
+    ck_assert_double_lt(fabs(world_energy(world).contact), TOLERANCE(1e-9, 1e-2));
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A disk that comes upon a plane touches it with its face, a whole circle; tractions over what nodes have of it, and
+// the outermost of the side, are the force.
+START_TEST(a_disk_touches_with_its_face) {
+    brunt_world_def def = def_begin(2, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def.axisymmetric = true;
+    brunt_body_def *body = mesh(def_box(&def, "disk", XYZ(0, 1e-4, 0), XYZ(0.8, 0.4001, 0)), 2, 0.1);
+    if (_i) body->element = BRUNT_TRI3;
+    def_velocity(body, 0, -1, 0);
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    def.step = 2e-4;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    ck_assert_double_gt(world_boundary(world, 0).impulse[1], 0);
+    ck_assert_double_eq_tol(world_boundary(world, 0).area, PI * 0.64, TOLERANCE(1e-10, 1e-4));
+    const double h = 0.1, force = world_boundary(world, 0).force[1];
+    double *x = world_field(world, 0, "position"), *way = world_field(world, 0, "displacement"),
+           *traction = world_field(world, 0, "contact_traction"), sum = 0;
+    for (int64_t n = 0; n < brunt_body_nodes(world, 0); n++) {
+        const double r = x[3 * n] - way[3 * n];                          // as it was when it was pushed
+        if (r > 0.01) sum += PI * h * (r - h / 3) * traction[3 * n + 1]; // inward, outward, or up the side
+        sum += PI * h * (r > 0.79 ? r : r + h / 3) * traction[3 * n + 1];
+    }
+    ck_assert_double_eq_tol(sum, force, TOLERANCE(1e-6, 1e-3) * force);
+    free(x), free(way), free(traction);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Two blocks with faces of 0.8 x 0.5 that come upon each other, with as many elements or more on one side.
 START_TEST(faces_that_meet_have_their_area) {
     const int dimension = _i % 2 + 2;
@@ -210,6 +279,9 @@ int main(void) {
     tcase_add_loop_test(all, gravity_turns_a_mesh_of_many_nodes, 0, 2);
     tcase_add_loop_test(all, a_wall_pushes_where_it_is_touched, 0, 4);
     tcase_add_test(all, work_that_cancels_is_a_measure);
+    tcase_add_test(all, tractions_add_up_to_the_force);
+    tcase_add_loop_test(all, a_disk_touches_with_its_face, 0, 2);
+    tcase_add_test(all, what_rests_loses_nothing_in_contact);
     tcase_add_loop_test(all, faces_that_meet_have_their_area, 0, 4);
     tcase_add_loop_test(all, an_edge_has_what_is_beside_it, 0, 4);
     tcase_add_loop_test(all, bodies_that_are_summed_up_at_once_have_the_same_sums, 0, 4);

@@ -605,6 +605,27 @@ START_TEST(rings_that_cross_the_axis_go) {
 }
 END_TEST
 
+// A body reaches as far as what is left of it.
+START_TEST(bounds_are_those_of_what_is_left) {
+    brunt_world_def def = def_begin(2, 0);
+    def_material(&def, "neo-hookean", DENSITY, E, NU);
+    block(&def, 1, XYZ(0, 0, 0), XYZ(1, 1, 0), 0.25)->erosion.inverted = true;
+    brunt_world *world = world_take(&def);
+    brunt_fem_body *fem = &world->bodies.fem[0];
+    for (int32_t s = 0; s < fem->slots; s++) {
+        bool beyond = fem->element_id[s] >= 0;
+        for (int a = 0; a < 4; a++) beyond = beyond && brunt_fem_node(fem, fem->element_node[4 * s + a])[0] > (real)0.4;
+        if (beyond) mark(fem, s);
+    }
+    erode(world);
+    const brunt_body_sums sums = world_sums(world, 0);
+    ck_assert_int_eq(brunt_body_elements(world, 0), 8);
+    ck_assert_double_eq(sums.high[0], 0.5);
+    ck_assert_double_eq(sums.high[1], 1);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Of a block with one element that is too short that one goes, and no other of its block.
 START_TEST(only_what_is_short_goes) {
     brunt_world_def def = def_begin(2, 0);
@@ -822,6 +843,7 @@ int main(void) {
     tcase_add_loop_test(all, inverted_elements_are_accounted, 0, 2 * MAY_INVERT);
     tcase_add_loop_test(all, rings_that_cross_the_axis_go, 0, 2);
     tcase_add_test(all, only_what_is_short_goes);
+    tcase_add_test(all, bounds_are_those_of_what_is_left);
     tcase_add_loop_test(all, short_elements_go_or_the_run_stops, 0, SOLIDS);
     tcase_add_test(all, faces_of_gone_elements_bear_no_load);
     tcase_add_test(all, gas_does_not_flow_out);

@@ -34,6 +34,9 @@ START_TEST(nodes_without_elements_are_left_out) {
     brunt_world *world = world_take(&def);
     int32_t node[4];
     ck_assert_int_eq(brunt_body_nodes(world, 0), 4);
+    ck_assert_double_eq(brunt_world_dt_min(world), brunt_world_dt(world)); // no step yet
+    const brunt_body_sums sums = world_sums(world, 0);
+    ck_assert(sums.low[2] == 0 && sums.high[2] == 0 && sums.high[0] == 2 && sums.high[1] == 1);
     brunt_body_connectivity(world, 0, node);
     ck_assert_mem_eq(node, corner, sizeof corner);
     double *x = world_field(world, 0, "position");
