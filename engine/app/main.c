@@ -1,8 +1,10 @@
 // The program: picks a command.
+#include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/app.h"
 #include "base/real.h"
@@ -45,15 +47,21 @@ __attribute__((constructor(101))) static void spin_shortly(void) {
     setenv("KMP_BLOCKTIME", "1", 0); // [ms]
 }
 
-// What was asked for is on the terminal or in its file, or the exit code says that it is not.
-static int printed(int status) {
-    if (!fflush(stdout) && !ferror(stdout)) return status;
+// Whoever closes a pipe wants no more of it: nothing is missed.
+static bool reader_gone(void) {
+    struct pollfd output = {.fd = STDOUT_FILENO};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
+}
+
+// What was asked for is on the terminal or in its file, or the exit code says that it is not. Runs and studies have
+// gone on to their end by then: their results are in files.
+static int printed(int status, bool writes_files) {
+    if ((!fflush(stdout) && !ferror(stdout)) || (writes_files && reader_gone())) return status;
     fputs("brunt: standard output cannot be written\n", stderr);
     return status ? status : BRUNT_IO_ERROR;
 }
 
 int main(int argc, char **argv) {
-    // Runs and studies go on when nothing reads what they print: their results are in files.
     static const struct {
         const char *name;
         int (*run)(int, char **);
@@ -69,17 +77,15 @@ int main(int argc, char **argv) {
     }
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h")) {
         fputs(help, stdout);
-        return printed(BRUNT_OK);
+        return printed(BRUNT_OK, false);
     }
     if (!strcmp(argv[1], "--version")) {
         printf("brunt %s (%s precision)\n", BRUNT_VERSION, BRUNT_REAL_NAME);
-        return printed(BRUNT_OK);
+        return printed(BRUNT_OK, false);
     }
     for (size_t c = 0; c < sizeof commands / sizeof *commands; c++)
-        if (!strcmp(argv[1], commands[c].name)) {
-            int status = commands[c].run(argc - 1, argv + 1);
-            return commands[c].writes_files ? status : printed(status);
-        }
+        if (!strcmp(argv[1], commands[c].name))
+            return printed(commands[c].run(argc - 1, argv + 1), commands[c].writes_files);
     fprintf(stderr,
             "brunt: there is no command '%s'; run, check, study, keys and info are known (brunt --help says more)\n",
             argv[1]);
