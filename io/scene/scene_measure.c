@@ -149,7 +149,9 @@ static const char *column_mistake(const scene_reader *reader, const char *column
 // `energy: total` is `history: energy.total`; `at` is `take`. The resolved scene has the longer names.
 static void unfold(scene_reader *reader, scene_node *node) {
     scene_node *energy = brunt_tree_child(node, "energy"), *at = brunt_tree_child(node, "at");
-    if (energy && energy->good && !brunt_tree_child(node, "history")) {
+    if (energy && brunt_tree_child(node, "history")) {
+        brunt_tree_complain_key(reader->tree, energy, "energy is a history, too: one of them is wanted");
+    } else if (energy && energy->good) {
         char column[96];
         snprintf(column, sizeof column, "energy.%.60s", energy->text);
         scene_node *history = brunt_add_default(reader, node, "history", column);
