@@ -398,14 +398,20 @@ static void check_value(scene_reader *reader, scene_node *node, const scene_key 
 
 void brunt_check_keys(scene_reader *reader) { check_group(reader, reader->tree->root, ""); }
 
+// As the number that it is: 2.0 is 2. 0: neither 2 nor 3, which the check of numbers says.
+static int dimension_of(const char *text) {
+    double value;
+    const char *rest;
+    text += strspn(text, " ");
+    if (brunt_read_number(text, &value, &rest) || rest[strspn(rest, " \t\n")]) return 0;
+    return value == 2 ? 2 : value == 3 ? 3 : 0;
+}
+
 void brunt_check_scene(scene_reader *reader) {
     // The lengths of all vectors hang on the dimension, so it is looked at before anything else.
     scene_node *root = reader->tree->root, *dimension = brunt_tree_child(root, "dimension");
     reader->dimension = dimension ? 0 : 3;
-    if (dimension && dimension->kind == SCENE_SCALAR) {
-        if (strcmp(dimension->text, "2") == 0) reader->dimension = 2;
-        if (strcmp(dimension->text, "3") == 0) reader->dimension = 3;
-    }
+    if (dimension && dimension->kind == SCENE_SCALAR) reader->dimension = dimension_of(dimension->text);
     brunt_expand_presets(reader);
     brunt_check_keys(reader);
 }

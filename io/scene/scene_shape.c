@@ -94,7 +94,8 @@ static void fill_polygon(scene_reader *reader, const scene_node *map, brunt_shap
 
 static void fill_box(scene_reader *reader, const scene_node *map, brunt_shape *shape) {
     bool low = brunt_vector_of(map, "min", shape->min), high = brunt_vector_of(map, "max", shape->max);
-    for (int c = 0; low && high && c < (reader->dimension == 2 ? 2 : 3); c++) {
+    // Where the dimension itself is wrong, that has been said.
+    for (int c = 0; low && high && c < reader->dimension; c++) {
         if (shape->min[c] < shape->max[c]) continue;
         char a[32], b[32];
         brunt_format_number(shape->min[c], a);

@@ -642,6 +642,11 @@ START_TEST(overrides) {
     ck_assert_int_eq(s.output.field_count, 1);
     ck_assert(s.world.materials[1].bulk_viscosity);
     brunt_scene_free(&s);
+    static const char *const threes[] = {"dimension=3.0", "dimension=+3", "dimension=0.3e1", "dimension=' 3 '"};
+    for (int i = 0; i < 4; i++) { // whole numbers, however they are written
+        ck_assert_msg(parse(good, &threes[i], 1, &s) == BRUNT_OK, "%s: %s", threes[i], messages);
+        brunt_scene_free(&s);
+    }
     static const struct {
         const char *set, *expect;
     } bad[] = {{"time.end=fast", "--set time.end=fast: time.end: 'fast' is not a number"},
