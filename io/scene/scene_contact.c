@@ -314,6 +314,8 @@ static void check_pair_columns(scene_reader *reader) {
     int32_t first[2], second[2];
     if (!brunt_pairs_of_one_name(world, first, second)) return;
     const brunt_body_def *body = world->bodies;
+    if (!strcmp(body[first[0]].name, body[second[0]].name) && !strcmp(body[first[1]].name, body[second[1]].name))
+        return; // a body that is there twice, which has been said
     const scene_node *all = brunt_tree_child(reader->tree->root, "bodies"),
                      *node = brunt_tree_child(all, body[second[0]].name);
     brunt_tree_complain_key(reader->tree, node ? node : all, // a member of a crowd has no key of its own

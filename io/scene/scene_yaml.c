@@ -27,6 +27,7 @@ typedef struct builder {
     scene_node anchors;       // a map by name, of what has what an anchor names as its first
     int node_limit;           // values of the tree
     int line, column;         // of the last event that had a place
+    int twice;                // messages about keys that are there twice, after which there is a tree yet
     bool stop;
 } builder;
 
@@ -176,12 +177,20 @@ static bool within_budget(builder *b) {
     return false;
 }
 
-// Puts a finished scalar, alias or opened container where it belongs.
-static void place(builder *b, scene_node *node) {
+static void complain_twice(builder *b, const scene_node *node, const scene_node *earlier) {
+    const int before = b->tree->message_count;
+    brunt_tree_complain_at(b->tree, b->option ? 0 : node->key_line, b->option ? 0 : node->key_column, b->option,
+                           "the key '%.60s' is there twice, first on line %d", node->key, earlier->key_line);
+    b->twice += b->tree->message_count - before;
+}
+
+// Puts a finished scalar, alias or opened container where it belongs: what takes its children. Of a key that is there
+// twice the first is what is found by its name, and both are looked through; a section goes on with the first one.
+static scene_node *place(builder *b, scene_node *node) {
     node->option = b->option;
     if (b->depth == 0) {
         b->root = node;
-        return;
+        return node;
     }
     scene_node *parent = b->stack[b->depth - 1];
     if (parent->kind == SCENE_MAP) {
@@ -195,13 +204,12 @@ static void place(builder *b, scene_node *node) {
             if (!node->line) node->line = node->key_line, node->column = node->key_column;
         }
         scene_node *earlier = brunt_tree_child(parent, key);
-        if (earlier) {
-            brunt_tree_complain_at(b->tree, b->option ? 0 : node->key_line, b->option ? 0 : node->key_column, b->option,
-                                   "the key '%.60s' is there twice, first on line %d", key, earlier->key_line);
-            return; // the first one stays
-        }
+        if (earlier) complain_twice(b, node, earlier);
+        if (earlier && b->depth == 1 && node->kind == SCENE_MAP && earlier->kind == SCENE_MAP && !node->first)
+            return earlier;
     }
     brunt_tree_append(parent, node);
+    return node;
 }
 
 // An escape ("\\0") can make what no text of ours holds: it would end there.
@@ -278,8 +286,8 @@ static void on_open(builder *b, scene_kind kind, struct fy_token *name, struct f
     scene_node *node = brunt_tree_node(b->tree, kind);
     if (!node) return;
     if (!b->option) node->line = b->line, node->column = b->column;
+    node = place(b, node);
     remember_anchor(b, name, node);
-    place(b, node);
     b->key[b->depth].text = NULL;
     b->stack[b->depth++] = node;
 }
@@ -415,5 +423,5 @@ scene_node *brunt_tree_parse(scene_tree *tree, const char *text, size_t length, 
         b.line = b.column = 1;
         complain_empty(&b);
     }
-    return tree->message_count == messages && !tree->exhausted ? b.root : NULL;
+    return tree->message_count == messages + b.twice && !tree->exhausted ? b.root : NULL;
 }
