@@ -97,8 +97,62 @@ static int make_load(brunt_node_set *set, brunt_messages *messages, brunt_error 
     return set->does->start ? set->does->start(set, error) : BRUNT_OK;
 }
 
+static bool same_table(const brunt_curve *a, const brunt_curve *b) {
+    bool same = a->count == b->count;
+    for (int32_t i = 0; same && i < a->count; i++)
+        same = a->points[i][0] == b->points[i][0] && a->points[i][1] == b->points[i][1];
+    return same;
+}
+
+static bool same_turn(const brunt_rotation_def *a, const brunt_rotation_def *b) {
+    bool same = a->angle == b->angle;
+    for (int c = 0; c < 3; c++) same = same && a->axis[c] == b->axis[c] && a->about[c] == b->about[c];
+    return same;
+}
+
+// Whether a set leaves component c where it is: a turn does along its axis.
+static bool keeps(const brunt_node_set *set, int c) {
+    const double *axis = set->def.rotation.axis;
+    return set->does->turns ? axis[(c + 1) % 3] == 0 && axis[(c + 2) % 3] == 0 : set->def.value[c] == 0;
+}
+
+// Components of `both` that two sets move each in its own way. A turn that comes later, about an axis along which an
+// earlier set pushes, is meant to go along.
+static unsigned disagree(const brunt_node_set *later, const brunt_node_set *earlier, unsigned both) {
+    const brunt_group_def *a = &later->def, *b = &earlier->def;
+    const bool alike = a->action == b->action && same_table(&a->table, &b->table) &&
+                       (!later->does->turns || same_turn(&a->rotation, &b->rotation));
+    for (int c = 0; c < 3; c++)
+        if ((keeps(later, c) && (later->does->turns || keeps(earlier, c))) || (alike && a->value[c] == b->value[c]))
+            both &= ~(1u << c);
+    return both;
+}
+
+// Says which sets before this one have nodes of it, each once. Nodes of groups ascend.
+static void warn_of_taken(const brunt_node_sets *sets, const brunt_node_set *set, unsigned wanted,
+                          brunt_messages *messages) {
+    for (const brunt_node_set *other = sets->set; other < set; other++) {
+        if (other->fem != set->fem || !other->holds) continue;
+        unsigned lost = 0;
+        int32_t count = 0;
+        for (int32_t i = 0, j = 0; i < set->node_count; i++) {
+            while (j < other->node_count && other->node[j] < set->node[i]) j++;
+            if (j == other->node_count || other->node[j] != set->node[i]) continue;
+            const unsigned here = disagree(set, other, wanted & other->holds[j]);
+            lost |= here, count += here != 0;
+        }
+        if (!count) continue;
+        brunt_warn(messages,
+                   "boundaries (%s): %d of the %d nodes of group '%s' of body '%s' are moved by boundaries (%s) along"
+                   "%s%s%s: it comes first, and '%s' does not move them there",
+                   set->boundary->name, (int)count, (int)set->node_count, set->def.group, set->def.body,
+                   other->boundary->name, lost & 1 ? " x" : "", lost & 2 ? " y" : "", lost & 4 ? " z" : "",
+                   set->boundary->name);
+    }
+}
+
 // Marks the components that a set prescribes: the first that does has them.
-static int make_prescribed(brunt_node_sets *sets, brunt_node_set *set, brunt_error *error) {
+static int make_prescribed(brunt_node_sets *sets, brunt_node_set *set, brunt_messages *messages, brunt_error *error) {
     brunt_fem_body *fem = set->fem;
     uint8_t **taken = &sets->taken[set->fem_index];
     if (!fem->held && BRUNT_NEW(fem->held, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
@@ -106,13 +160,15 @@ static int make_prescribed(brunt_node_sets *sets, brunt_node_set *set, brunt_err
     if (BRUNT_NEW(set->holds, set->node_count + 1, "nodes that are held", error) ||
         BRUNT_NEW(set->internal, 3 * (size_t)(set->node_count + 1), "forces on nodes that are held", error))
         return BRUNT_FAILED;
-    unsigned wanted = 0;
+    unsigned wanted = 0, lost = 0;
     for (int a = 0; a < fem->dim; a++) wanted |= (unsigned)set->def.component[a] << a;
     for (int32_t i = 0; i < set->node_count; i++) {
         const int32_t n = set->node[i];
+        lost |= wanted & (*taken)[n];
         set->holds[i] = (uint8_t)(wanted & ~(unsigned)(*taken)[n]);
         (*taken)[n] |= set->holds[i], fem->held[n] |= set->holds[i];
     }
+    if (lost) warn_of_taken(sets, set, wanted, messages);
     return BRUNT_OK;
 }
 
@@ -183,7 +239,7 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
                 return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
                                   set->boundary->name);
         if (is_idle(set)) continue;
-        status = set->does->moves ? make_prescribed(sets, set, error) : make_load(set, messages, error);
+        status = set->does->moves ? make_prescribed(sets, set, messages, error) : make_load(set, messages, error);
         if (status) return status;
         sets->act = true;
         sets->has_gas = sets->has_gas || set->does->gas;

@@ -449,6 +449,66 @@ START_TEST(explosives_that_are_doubtful) {
 }
 END_TEST
 
+// Nodes that two boundaries hold or move: the first has them, and where the second would move them otherwise that is
+// said once, of any number of nodes.
+START_TEST(boundaries_that_share_nodes) {
+    static const char head[] = "brunt: 1\ndimension: 3\ntime: {end: 1 ms}\n"
+                               "materials: {gum: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\n"
+                               "bodies:\n"
+                               "  a: {method: fem, material: gum, size: 1, shape: {box: {min: [0, 0, 0], max: [1, 1, "
+                               "1]}}}\n"
+                               "  b: {method: fem, material: gum, size: 1, shape: {box: {min: [0, 0, 2], max: [1, 1, "
+                               "3]}}}\n"
+                               "boundaries:\n";
+    static const struct {
+        const char *boundaries, *said; // NULL: nothing
+    } cases[] = {
+        {"  - {name: hold, body: a, group: xmin, fix: all}\n  - {name: push, body: a, group: xmin, velocity: [1, 0, "
+         "0]}",
+         "boundaries (push): 4 of the 4 nodes of group 'xmin' of body 'a' are moved by boundaries (hold) along x: it "
+         "comes first, and 'push' does not move them there"},
+        {"  - {name: push, body: a, group: xmin, velocity: [1, 0, 2]}\n  - {name: hold, body: a, group: ymin, fix: "
+         "all}",
+         "boundaries (hold): 2 of the 4 nodes of group 'ymin' of body 'a' are moved by boundaries (push) along x z: "
+         "it"},
+        {"  - {name: turn, body: a, group: zmin, rotation: {angle: 1, axis: [0, 0, 1]}}\n"
+         "  - {name: lift, body: a, group: zmin, displacement: [free, free, 1]}",
+         "are moved by boundaries (turn) along z: it comes first, and 'lift'"},
+        {"  - {name: slow, body: a, group: zmin, velocity: [0, 0, 1]}\n"
+         "  - {name: fast, body: a, group: zmin, velocity: [0, 0, 1], table: [[0, 0], [1, 1]]}",
+         "are moved by boundaries (slow) along z: it comes first, and 'fast'"},
+        {"  - {name: lift, body: a, group: zmin, displacement: [free, free, 1]}\n"
+         "  - {name: turn, body: a, group: zmin, rotation: {angle: 1, axis: [0, 0, 1]}}",
+         NULL},
+        {"  - {name: one, body: a, group: xmin, fix: all}\n  - {name: two, body: a, group: ymin, fix: all}", NULL},
+        {"  - {name: one, body: a, group: xmin, velocity: [1, 0, 0]}\n"
+         "  - {name: two, body: a, group: ymin, velocity: [1, 0, 0]}",
+         NULL},
+        {"  - {name: one, body: a, group: xmin, fix: [y]}\n"
+         "  - {name: two, body: a, group: xmin, velocity: [1, free, free]}",
+         NULL},
+        {"  - {name: one, body: a, group: xmin, fix: all}\n  - {name: two, body: b, group: xmin, velocity: [1, 0, 0]}",
+         NULL},
+        {"  - {name: one, body: a, group: xmin, fix: all}\n  - {name: two, body: a, group: xmax, velocity: [1, 0, 0]}",
+         NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1200];
+        brunt_scene scene;
+        const int length = snprintf(text, sizeof text, "%s%s\n", head, cases[i].boundaries);
+        ck_assert_int_eq(brunt_scene_parse(text, (size_t)length, "shared.yaml", NULL, 0, &scene, stderr), BRUNT_OK);
+        brunt_world *world = small_world(&scene);
+        ck_assert_msg(brunt_warning_count(world) == (cases[i].said != NULL), "%s: %d warnings", cases[i].boundaries,
+                      (int)brunt_warning_count(world));
+        if (cases[i].said)
+            ck_assert_msg(strstr(brunt_world_warning(world, 0), cases[i].said) != NULL, "%s",
+                          brunt_world_warning(world, 0));
+        brunt_world_destroy(world);
+        brunt_scene_free(&scene);
+    }
+}
+END_TEST
+
 __attribute__((noinline)) static char *captured(const char *section, bool *found) {
     char *text = NULL;
     size_t length;
@@ -496,6 +556,7 @@ int main(void) {
     tcase_add_test(tests, worlds_that_are_refused);
     tcase_add_test(tests, closed_gaps_are_refused);
     tcase_add_test(tests, explosives_that_are_doubtful);
+    tcase_add_test(tests, boundaries_that_share_nodes);
     tcase_add_test(tests, reference_has_presets_and_failure);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
