@@ -195,7 +195,7 @@ static void fill_grid(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     scene_node *grid = brunt_tree_child(reader->tree->root, "grid");
     bool only_fem = (has_method(reader, "fem") || has_method(reader, "membrane")) && !has_method(reader, "mpm");
-    if (!grid && !only_fem)
+    if (!grid && has_method(reader, "mpm")) // a body of no method is asked for that first
         brunt_tree_complain_key(reader->tree, reader->tree->root, "'grid' is missing: %s",
                                 brunt_scene_row("grid")->doc);
     if (grid && only_fem) brunt_scene_warn(reader, "grid: no body is of method mpm, it is not used");
