@@ -51,12 +51,20 @@ static void drop_none(scene_node *material, const char *key) {
     if (child && child->kind == SCENE_SCALAR && strcmp(child->text, "none") == 0) brunt_tree_remove(child);
 }
 
+static void drop_nones(scene_node *material) {
+    drop_none(material, "eos");
+    drop_none(material, "failure");
+    drop_none(material, "viscosity");
+}
+
 static void expand(scene_tree *tree, scene_node *material) {
     scene_node *preset = brunt_tree_child(material, "preset"), *map;
     brunt_material_def def;
-    if (!preset || preset->kind != SCENE_SCALAR ||
-        brunt_material_preset(preset->text, material->key, &def, NULL) != BRUNT_OK)
-        return; // the check of words says what is wrong
+    if (!preset || preset->kind != SCENE_SCALAR) return;
+    if (brunt_material_preset(preset->text, material->key, &def, NULL) != BRUNT_OK) {
+        drop_nones(material); // the check of words says what is wrong; these are as they should be
+        return;
+    }
     const scene_node *model = brunt_tree_child(material, "model");
     const bool other = model && (model->kind != SCENE_SCALAR || strcmp(model->text, def.strength) != 0);
     add_number(tree, material, "density", def.density);
@@ -74,9 +82,7 @@ static void expand(scene_tree *tree, scene_node *material) {
     if (def.bulk_viscosity && (map = component(tree, material, "viscosity")))
         for (int p = 0; p < brunt_bulk_viscosity.parameter_count; p++)
             add_number(tree, map, brunt_bulk_viscosity.parameters[p].key, def.viscosity_parameters[p]);
-    drop_none(material, "eos");
-    drop_none(material, "failure");
-    drop_none(material, "viscosity");
+    drop_nones(material);
     brunt_tree_remove(preset);
 }
 
