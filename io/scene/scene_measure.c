@@ -455,7 +455,7 @@ static void fill_unit(scene_reader *reader, scene_node *node, brunt_measure *mea
             brunt_tree_complain(reader->tree, unit, "%s", why);
         else if (one != 1 || zero != 0)
             brunt_tree_complain(reader->tree, unit, "measures are printed in SI: '%.40s' has a factor, %s is wanted",
-                                unit->text, base);
+                                unit->text, brunt_units_written(base));
         else if (has_unit(expect) && strcmp(expect->base, base) != 0)
             brunt_tree_complain(reader->tree, unit, "the unit is %s, but expect is in %s", unit->text, expect->base);
     } else if (has_unit(expect)) {

@@ -306,6 +306,13 @@ bool brunt_units_convert(brunt_units *units, const char *unit, const char *wante
     return done;
 }
 
+const char *brunt_units_written(const char *base) {
+    for (size_t i = 0; i < sizeof usual_units / sizeof *usual_units; i++)
+        if (usual_units[i].times == usual_units[i].over && strcmp(usual_units[i].base, base) == 0)
+            return usual_units[i].unit;
+    return base;
+}
+
 bool brunt_units_to_si(brunt_units *units, const char *unit, double *value, char base[BRUNT_UNIT_LENGTH], char *message,
                        size_t size) {
     const usual_unit *usual = find_usual(unit);

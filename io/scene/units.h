@@ -18,6 +18,9 @@ void brunt_units_close(brunt_units *units);
 bool brunt_units_convert(brunt_units *units, const char *unit, const char *wanted, double *value, char *message,
                          size_t size);
 
+// SI base units as scenes have them: "N" for "m.kg.s-2"; as they are where there is no such name.
+const char *brunt_units_written(const char *base);
+
 // Converts `*value` to the SI base units of its own dimension, and writes those to `base` ("m.s-1"; "1" for a pure
 // number).
 bool brunt_units_to_si(brunt_units *units, const char *unit, double *value, char base[BRUNT_UNIT_LENGTH], char *message,
