@@ -161,10 +161,17 @@ static void warn_of_lone_points(brunt_world *world) {
         const brunt_body *body = &world->bodies.mpm[i];
         const bool softens = body->material.model[BRUNT_FAILURE] && !body->fails;
         if (!softens && !body->material.model[BRUNT_STRENGTH]->fluid) continue;
-        brunt_warn(&world->messages,
-                   "bodies.%s: material points that come away from others bear pressure alone, which with this kernel "
-                   "and transfer is stable up to cfl %.2g; time.cfl is %.2g",
-                   body->name, limit, world->settings.cfl);
+        if (limit > 0)
+            brunt_warn(&world->messages,
+                       "bodies.%s: material points that come away from others bear pressure alone, which with this "
+                       "kernel and transfer is stable up to cfl %.2g; time.cfl is %.2g",
+                       body->name, limit, world->settings.cfl);
+        else
+            brunt_warn(&world->messages,
+                       "bodies.%s: material points that come away from others bear pressure alone, which with this "
+                       "kernel and transfer is stable at no step: grid.kernel quadratic or cubic is wanted, or "
+                       "grid.transfer flip or pic",
+                       body->name);
     }
 }
 
