@@ -326,7 +326,7 @@ static void take_number(study_reader *r, const scene_node *child, int32_t a, bru
     if (resolution && axis->value_count && strcmp(axis->unit, unit) != 0)
         brunt_tree_complain(study_tree(r), child, "'%s' is of another unit than the values before it", value->label);
     for (int32_t v = 0; resolution && v < axis->value_count; v++)
-        if (axis->values[v].number == value->number)
+        if (axis->values[v].number == value->number && strcmp(axis->values[v].label, value->label) != 0)
             brunt_tree_complain(study_tree(r), child, "'%s' is there twice, as '%s'", value->label,
                                 axis->values[v].label);
 }
