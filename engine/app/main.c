@@ -27,7 +27,7 @@ static const char help[] =
     "      run a scene over a grid of settings; errors against time, with plots and a report, go to DIR "
     "(out/study/<study\n"
     "      name>); the same command goes on with what is not finished, --fresh begins anew\n"
-    "  brunt keys [SECTION] [--schema]\n"
+    "  brunt keys [SECTION | KEY] [--schema]\n"
     "      the reference of scene files (section study: of study files); --schema: as a JSON Schema for editors\n"
     "  brunt info FILE\n"
     "      what a checkpoint, history, picture, collection or mesh file (.msh) holds\n"

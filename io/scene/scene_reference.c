@@ -244,6 +244,19 @@ static void write_study(FILE *out) {
     for (int i = 0; i < *brunt_study_format.row_count; i++) write_key(out, &brunt_study_format.rows[i]);
 }
 
+// A single key, or all that are below it.
+static bool write_below(FILE *out, const char *path) {
+    const size_t length = strlen(path);
+    bool found = false;
+    for (int i = 0; i < brunt_scene_table_count; i++) {
+        const scene_key *row = &brunt_scene_table[i];
+        if (strncmp(row->path, path, length) != 0 || !strchr(".[", row->path[length])) continue; // its end, too
+        write_key(out, row);
+        found = true;
+    }
+    return found;
+}
+
 bool brunt_scene_keys(const char *section, FILE *out) {
     bool found = false;
     if (section && strcmp(section, brunt_study_format.name) == 0) {
@@ -267,7 +280,7 @@ bool brunt_scene_keys(const char *section, FILE *out) {
     }
     if (strcmp(section ? section : "history", "history") == 0) write_columns(out), found = true;
     if (strcmp(section ? section : "presets", "presets") == 0) write_presets(out), found = true;
-    if (found) return true;
+    if (found || write_below(out, section)) return true;
     const brunt_model *model = brunt_find_strength(section);
     if (!model) model = brunt_find_eos(section);
     if (!model) model = brunt_find_failure(section);

@@ -841,9 +841,19 @@ START_TEST(reference) {
     text = captured("time", &found);
     ck_assert(found && strstr(text, "time.end") && !strstr(text, "grid.cell"));
     free(text);
-    text = captured("nonsense", &found);
-    ck_assert(!found);
+    text = captured("time.cfl", &found);
+    ck_assert(found && strstr(text, "time.cfl ") && !strstr(text, "time.end"));
     free(text);
+    text = captured("bodies.*.random", &found);
+    ck_assert(found && strstr(text, "bodies.*.random.seed") && !strstr(text, "bodies.*.random_"));
+    ck_assert(!strstr(text, "bodies.*.seed"));
+    free(text);
+    static const char *const none[] = {"nonsense", "time.cf", "tim", "", "time."};
+    for (int i = 0; i < 5; i++) {
+        text = captured(none[i], &found);
+        ck_assert_msg(!found && !*text, "%s: %s", none[i], text);
+        free(text);
+    }
 }
 END_TEST
 
