@@ -63,6 +63,13 @@ static bool has_membranes(const brunt_bodies *bodies) {
     return false;
 }
 
+// That they are there, and what contact does otherwise at them: to stop a node gives nothing back.
+static const char *membranes_because(const brunt_contact *contact) {
+    return contact->rows && contact->has_surfaces && contact->def.touch == BRUNT_TOUCH_ELASTIC
+               ? "bodies: method membrane; contact with them gives nothing back (contact.touch)"
+               : "bodies: method membrane";
+}
+
 static bool has_mass_scaling(const brunt_bodies *bodies) {
     for (int k = 0; k < bodies->fem_count; k++)
         if (bodies->fem[k].field[BRUNT_ELEMENT_density_scale].components) return true;
@@ -92,7 +99,7 @@ static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
     X(groups, world->boundaries.sets.act, "boundaries: group")                                                         \
     X(gas, world->boundaries.sets.has_gas, "boundaries: gas")                                                          \
     X(damping, world->boundaries.damping.active, "bodies: damping")                                                    \
-    X(membranes, has_membranes(&world->bodies), "bodies: method membrane")                                             \
+    X(membranes, has_membranes(&world->bodies), membranes_because(&world->contact))                                    \
     X(tension_only, has_tension_only(&world->bodies), "bodies: tension_only")                                          \
     X(total_lagrangian, has_total_lagrangian(&world->bodies), "bodies: lagrangian total")                              \
     X(boundaries, world->boundaries.meets_points, "boundaries: condition separate, line, mesh")                        \

@@ -478,6 +478,35 @@ START_TEST(lone_points_are_warned_of) {
 }
 END_TEST
 
+// The plan says where the default of contact.touch does not act, and only there.
+START_TEST(touch_of_membranes_is_told) {
+    static const char text[] =
+        "brunt: 1\ndimension: 3\ntime: {end: 1 ms}\n"
+        "materials: {gum: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\n"
+        "bodies:\n"
+        "  drum: {method: membrane, material: gum, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, faces: [zmin], "
+        "size: "
+        "1, thickness: 1 mm}\n"
+        "  block: {method: fem, material: gum, size: 1, shape: {box: {min: [0, 0, 2], max: [1, 1, 3]}}}\n";
+    static const char *const sets[] = {"contact.touch=elastic", "contact.touch=inelastic", "contact.method=none"};
+    for (int s = 0; s < 3; s++) {
+        brunt_scene scene;
+        small_scene_of(text, &scene, &sets[s], 1);
+        brunt_world *world = small_world(&scene);
+        int found = 0;
+        for (int32_t e = 0; e < brunt_effect_count(world); e++) {
+            const brunt_effect effect = brunt_world_effect(world, e);
+            if (strcmp(effect.name, "membranes") != 0) continue;
+            ck_assert(effect.on);
+            found += strstr(effect.because, "gives nothing back (contact.touch)") != NULL;
+        }
+        ck_assert_int_eq(found, s == 0);
+        brunt_world_destroy(world);
+        brunt_scene_free(&scene);
+    }
+}
+END_TEST
+
 // Nodes that two boundaries hold or move: the first has them, and where the second would move them otherwise that is
 // said once, of any number of nodes.
 START_TEST(boundaries_that_share_nodes) {
@@ -586,6 +615,7 @@ int main(void) {
     tcase_add_test(tests, closed_gaps_are_refused);
     tcase_add_test(tests, explosives_that_are_doubtful);
     tcase_add_test(tests, lone_points_are_warned_of);
+    tcase_add_test(tests, touch_of_membranes_is_told);
     tcase_add_test(tests, boundaries_that_share_nodes);
     tcase_add_test(tests, reference_has_presets_and_failure);
     suite_add_tcase(suite, tests);
