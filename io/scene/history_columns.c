@@ -66,7 +66,7 @@ const history_column brunt_column_table[] = {
     {"body.*.eroded", "1", "elements and material points that have left it", "erosion"},
     {"body.*.eroded_mass", "kg", "their mass, and that of nodes without elements", "erosion"},
 
-    {"contact.*.force_?", "N", "on the second body of the pair (contact.a-b: on b), mean over output.force_window; 2D: per metre of thickness", "contact"},
+    {"contact.*.force_?", "N", "on the second body of the pair (contact.a-b: on b; pairs are named in the alphabetical order of their bodies, whatever that of the scene is), mean over output.force_window; 2D: per metre of thickness", "contact"},
     {"contact.*.force", "N", "size of that", "contact"},
     {"contact.*.impulse_?", "N s", "since the start", "contact"},
     {"contact.*.area", "m^2 or m", "what touched in the last step (2D: its length); implicit: what is nearer than contact.distance", "contact"},
