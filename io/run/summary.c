@@ -97,7 +97,14 @@ static json_t *eroded_of(brunt_world *world) {
     return bodies;
 }
 
-// [kg] that mass scaling has added to each body that has it.
+// Whether mass scaling has made elements of a body denser, and what of it.
+static bool is_scaled(const brunt_world *world, int32_t body, brunt_mesh_report *report) {
+    if (brunt_body_method(world, body) == BRUNT_MPM) return false;
+    brunt_body_mesh(world, body, report);
+    return report->scaled_elements > 0;
+}
+
+// [kg] that it has added to each body that has it.
 static json_t *added_mass_of(const brunt_world *world) {
     json_t *bodies = json_object();
     for (int32_t b = 0; b < brunt_body_count(world); b++) {
@@ -347,10 +354,9 @@ static void print_eroded(brunt_world *world, brunt_console *console) {
 
 static void print_added_mass(brunt_world *world, brunt_console *console) {
     for (int32_t b = 0; b < brunt_body_count(world); b++) {
-        brunt_mesh_report report = {.scaled_elements = 0};
+        brunt_mesh_report report;
         brunt_body_sums sums;
-        if (brunt_body_method(world, b) != BRUNT_MPM) brunt_body_mesh(world, b, &report);
-        if (!report.scaled_elements) continue;
+        if (!is_scaled(world, b, &report)) continue;
         brunt_body_totals(world, b, &sums);
         brunt_console_print(console, "mass scaling of %s: %lld elements made denser, %.4g kg added, of %.4g kg now\n",
                             brunt_body_name(world, b), (long long)report.scaled_elements, report.added_mass, sums.mass);
