@@ -8,11 +8,9 @@ shown together, with one colour scale; one that has not got the field, as the po
 Needs python3-vtk9; where there is no display, xvfb too (`sh cmake/install.sh picture`). Exit codes as those of brunt: 64 bad usage, 65 bad input, 74 file system.
 """
 import argparse
-import io
 import os
 import subprocess
 import sys
-import xml.etree.ElementTree
 
 COMPONENTS = {1: {}, 3: {"x": 0, "y": 1, "z": 2}, 6: {"xx": 0, "yy": 1, "zz": 2, "xy": 3, "yz": 4, "xz": 5}}
 
@@ -103,17 +101,11 @@ def read_file(vtk, path):
     return reader.GetOutput()
 
 
-def file_unit(path, field):
-    """The unit a writer may have put into the array's attributes."""
-    with open(path, "rb") as f:
-        head = f.read(65536).split(b"<AppendedData")[0]
-    try:
-        for _, element in xml.etree.ElementTree.iterparse(io.BytesIO(head), events=["start"]):
-            if element.tag == "DataArray" and element.get("Name") == field:
-                return element.get("unit") or element.get("Unit")
-    except xml.etree.ElementTree.ParseError:
-        pass
-    return None
+def file_unit(vtk, path, field):
+    """The unit that the file tells of the field, if any."""
+    grid = read_file(vtk, path)
+    array = grid.GetPointData().GetArray(field) or grid.GetCellData().GetArray(field)
+    return array.GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) if array else None
 
 
 def values_of(np, array, component, path, field):
@@ -422,7 +414,8 @@ def make_scene(vtk, np, args, scale):
     if args.links:
         renderer.AddActor(links_actor(vtk, np, args.links))
 
-    unit = args.unit if args.unit is not None else file_unit(args.files[0], args.field)
+    units = [unit for unit in (file_unit(vtk, path, args.field) for path in args.files) if unit]
+    unit = args.unit if args.unit is not None or not units else units[0]
     title = args.title or args.field.replace("_", " ")
     if args.title is None and args.component != "magnitude":
         title += " " + args.component

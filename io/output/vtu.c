@@ -10,6 +10,10 @@
 #include "base/array.h"
 #include "base/memory.h"
 
+// VTK's own key for the unit of an array.
+#define UNIT_BEGIN "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">"
+#define UNIT_END "</InformationKey>"
+
 // Uncompressed bytes of a zlib block. VTK's own default is 32768; larger blocks compress better and read as fast.
 enum { BLOCK_BYTES = 262144 };
 
@@ -83,6 +87,14 @@ static void put_name(FILE *out, const char *name) {
     }
 }
 
+// Ends the element of an array, with its unit if it has one.
+static void put_unit(FILE *out, const char *unit) {
+    if (unit && strcmp(unit, "1"))
+        fprintf(out, ">" UNIT_BEGIN "%s" UNIT_END "</DataArray>\n", unit);
+    else
+        fputs("/>\n", out);
+}
+
 // Starts the element of an array in the header and its data in the appended part.
 static int append_array(vtu_writer *w, const brunt_vtu_array *array, int64_t count) {
     FILE *header = w->header;
@@ -102,7 +114,8 @@ static int append_array(vtu_writer *w, const brunt_vtu_array *array, int64_t cou
     put_name(header, array->name);
     fprintf(header, "\" NumberOfComponents=\"%d\"", array->components);
     for (int c = 0; names && c < array->components; c++) fprintf(header, " ComponentName%d=\"%s\"", c, names[c]);
-    fprintf(header, " format=\"appended\" offset=\"%zu\"/>\n", w->appended.size);
+    fprintf(header, " format=\"appended\" offset=\"%zu\"", w->appended.size);
+    put_unit(header, array->unit);
 
     scratch->size = 0;
     int status = reserve(scratch, values * width, w->error);
@@ -243,6 +256,15 @@ static bool attribute(const char *element, const char *end, const char *name, ch
     return false;
 }
 
+// The unit of the array whose element begins before `end`; false: it has none.
+static bool unit_behind(const char *end, char *out, size_t room) {
+    const size_t length = strlen(UNIT_BEGIN);
+    const char *unit = end + 1 + length, *last = strncmp(end + 1, UNIT_BEGIN, length) ? NULL : strchr(unit, '<');
+    if (!last || (size_t)(last - unit) >= room) return false;
+    snprintf(out, room, "%.*s", (int)(last - unit), unit);
+    return true;
+}
+
 int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
     const char *why;
     FILE *file = brunt_input_open(path, &why);
@@ -283,7 +305,9 @@ int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
                 fprintf(out, "time       %.17g s\n", strtod(end + 1, NULL));
             } else if (attribute(at, end, "type", b, sizeof b)) {
                 if (!attribute(at, end, "NumberOfComponents", c, sizeof c)) strcpy(c, "1");
-                fprintf(out, "array      %-28s %s x %s\n", a, b, c);
+                fprintf(out, "array      %-28s %s x %s", a, b, c);
+                if (unit_behind(end, a, sizeof a)) fprintf(out, " [%s]", a);
+                fputc('\n', out);
             }
         }
         if (!strncmp(at, "<DataSet", 8) && attribute(at, end, "timestep", a, sizeof a) &&

@@ -22,6 +22,7 @@ typedef struct brunt_vtu_grid {
 // set.
 typedef struct brunt_vtu_array {
     const char *name; // characters outside [A-Za-z0-9_] become _
+    const char *unit; // SI, as vtkDataArray::UNITS_LABEL(); NULL: none, or a number
     int components;   // 1, 3 (vector), 6 (symmetric XX YY ZZ XY YZ XZ) or 9 (matrix, row major)
     const double *values;
     const int64_t *integers; // NULL unless the array is of integers

@@ -126,6 +126,7 @@ static int add_field(taking *t, const char *name, brunt_error *error) {
     const double *values = read_all(t, name, info.at, info.components, error);
     if (!values) return BRUNT_FAILED;
     brunt_vtu_add(t->picture, (brunt_vtu_array){.name = info.name,
+                                                .unit = info.unit,
                                                 .components = info.components,
                                                 .values = values,
                                                 .at_cells = info.at == BRUNT_AT_ELEMENTS});

@@ -18,9 +18,10 @@ brunt_vtu_picture *brunt_vtu_take_boundary(const brunt_world *world, int32_t sur
                                                   .piece = piece};
     brunt_boundary_surface_particles(world, surface, &arrays);
     p->grid = (brunt_vtu_grid){.point_count = count, .points = arrays.position};
-    brunt_vtu_add(p, (brunt_vtu_array){.name = "traction", .components = 3, .values = arrays.traction});
+    const char *area = brunt_world_dimension(world) == 3 ? "m^2" : "m";
+    brunt_vtu_add(p, (brunt_vtu_array){.name = "traction", .unit = "Pa", .components = 3, .values = arrays.traction});
     brunt_vtu_add(p, (brunt_vtu_array){.name = "normal", .components = 3, .values = arrays.normal});
-    brunt_vtu_add(p, (brunt_vtu_array){.name = "weight", .components = 1, .values = arrays.weight});
+    brunt_vtu_add(p, (brunt_vtu_array){.name = "weight", .unit = area, .components = 1, .values = arrays.weight});
     brunt_vtu_add(p, (brunt_vtu_array){.name = "piece", .components = 1, .integers = piece});
     return p;
 }

@@ -52,9 +52,9 @@ static void fill(brunt_world *world, int32_t links, link_arrays *to) {
 
 static void show(brunt_vtu_picture *picture, const link_arrays *all, int32_t links) {
     const brunt_vtu_array shown[] = {
-        {.name = "normal", .components = 1, .values = all->normal, .at_cells = true},
-        {.name = "force", .components = 3, .values = all->force, .at_cells = true},
-        {.name = "friction", .components = 1, .values = all->friction, .at_cells = true},
+        {.name = "normal", .unit = "N", .components = 1, .values = all->normal, .at_cells = true},
+        {.name = "force", .unit = "N", .components = 3, .values = all->force, .at_cells = true},
+        {.name = "friction", .unit = "N", .components = 1, .values = all->friction, .at_cells = true},
         {.name = "share", .components = 1, .values = all->share, .at_cells = true},
         {.name = "body_a", .components = 1, .integers = all->body, .at_cells = true},
         {.name = "body_b", .components = 1, .integers = all->body + links, .at_cells = true},

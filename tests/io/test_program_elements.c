@@ -88,6 +88,7 @@ START_TEST(runs_and_pictures) {
     ck_assert_double_lt(range[0], 0);
     contains(shell(0, "$R --collection out/brunt.pvd"), "upper 0.04");
     contains(shell(0, "$P info out/vtu/upper_000001.vtu"), "at the elements\n");
+    contains(shell(0, "$P info out/vtu/upper_000001.vtu"), "Float32 x 6 [Pa]\n");
     contains(shell(0, "$P info out/checkpoint.h5"), "elements   ");
     contains(shell(0, "head -1 out/history.csv"), "contact.lower-upper.area [m^2]");
 }

@@ -59,11 +59,12 @@ static void write_pattern(const char *path, int64_t count, bool float32) {
     for (int64_t i = 0; i < count; i++) ids[i] = i * 3000000000; // beyond 32 bits
     double *points = filled(7, count, 3), *scalar = filled(1, count, 1), *vector = filled(2, count, 3),
            *tensor = filled(3, count, 6), *matrix = filled(4, count, 9);
-    const brunt_vtu_array arrays[] = {{.name = "id", .components = 1, .integers = ids},
-                                      {.name = "plastic_strain", .components = 1, .values = scalar},
-                                      {.name = "velocity", .components = 3, .values = vector},
-                                      {.name = "cauchy stress/2", .components = 6, .values = tensor},
-                                      {.name = "deformation_gradient", .components = 9, .values = matrix}};
+    const brunt_vtu_array arrays[] = {
+        {.name = "id", .components = 1, .integers = ids},
+        {.name = "plastic_strain", .unit = "1", .components = 1, .values = scalar},
+        {.name = "velocity", .unit = "m/s", .components = 3, .values = vector},
+        {.name = "cauchy stress/2", .unit = "kg m^-1 s^-2", .components = 6, .values = tensor},
+        {.name = "deformation_gradient", .components = 9, .values = matrix}};
     const brunt_vtu_grid grid = {.point_count = count, .points = points};
     brunt_error error = {0};
     ck_assert_msg(brunt_vtu_write(path, 0.1 + 0.2, &grid, arrays, 5, float32, &error) == BRUNT_OK, "%s", error.message);
@@ -92,8 +93,8 @@ static void add_pattern(int which, FILE *arguments, FILE *wanted) {
     fprintf(wanted,
             "points %lld cells %lld\ntime 0.30000000000000004\nactive plastic_strain velocity\narray id long_long "
             "%lld None\n"
-            "array plastic_strain %s %lld None\narray velocity %s %lld X,Y,Z\narray cauchy_stress_2 %s %lld "
-            "XX,YY,ZZ,XY,YZ,XZ\n"
+            "array plastic_strain %s %lld None\narray velocity %s %lld X,Y,Z [m/s]\narray cauchy_stress_2 %s "
+            "%lld XX,YY,ZZ,XY,YZ,XZ [kg m^-1 s^-2]\n"
             "array deformation_gradient %s %lld XX,XY,XZ,YX,YY,YZ,ZX,ZY,ZZ\n%spattern ok\n",
             n, n, n, type, n, type, n, type, n, type, n, count ? "cell types 1\n" : "");
 }
@@ -188,11 +189,12 @@ static void write_elements(const char *path, int shape, int64_t count, bool floa
             x[3 * at + c] = shapes[shape].corner[i % n][c] + (c == 0 ? 2 * (double)(i / n % 1000) : 0);
     }
     double *vector = filled(1, points, 3), *scalar = filled(2, count, 1), *tensor = filled(4, count, 6);
-    const brunt_vtu_array arrays[] = {{.name = "id", .components = 1, .integers = ids},
-                                      {.name = "velocity", .components = 3, .values = vector},
-                                      {.name = "plastic_strain", .components = 1, .values = scalar, .at_cells = true},
-                                      {.name = "id", .components = 1, .integers = ids, .at_cells = true},
-                                      {.name = "stress", .components = 6, .values = tensor, .at_cells = true}};
+    const brunt_vtu_array arrays[] = {
+        {.name = "id", .components = 1, .integers = ids},
+        {.name = "velocity", .components = 3, .values = vector},
+        {.name = "plastic_strain", .components = 1, .values = scalar, .at_cells = true},
+        {.name = "id", .components = 1, .integers = ids, .at_cells = true},
+        {.name = "stress", .unit = "Pa", .components = 6, .values = tensor, .at_cells = true}};
     const brunt_vtu_grid grid = {points, count, x, cells, element->nodes, element->shape->vtk_cell};
     brunt_error error = {0};
     ck_assert_msg(brunt_vtu_write(path, 0.5, &grid, arrays, 5, float32, &error) == BRUNT_OK, "%s", error.message);
@@ -220,7 +222,7 @@ static void add_elements(int which, FILE *arguments, FILE *wanted) {
     fprintf(wanted,
             "points %lld cells %lld\ntime 0.5\nactive - velocity\narray id long_long %lld None\narray velocity %s %lld "
             "X,Y,Z\nactive of cells plastic_strain -\ncell array plastic_strain %s %lld None\ncell array id long_long "
-            "%lld None\ncell array stress %s %lld XX,YY,ZZ,XY,YZ,XZ\n%spattern ok\n",
+            "%lld None\ncell array stress %s %lld XX,YY,ZZ,XY,YZ,XZ [Pa]\n%spattern ok\n",
             nodes * count, count, nodes * count, type, nodes * count, type, count, count, type, count, size);
 }
 
@@ -238,6 +240,8 @@ START_TEST(describes_elements) {
     ck_assert_ptr_nonnull(strstr(text, "nodes      800\nelements   100\n"));
     const char *nodes = strstr(text, "at the nodes\n"), *cells = strstr(text, "at the elements\n");
     ck_assert(nodes && cells && strstr(nodes, "velocity") < cells && strstr(cells, "plastic_strain"));
+    ck_assert_ptr_nonnull(strstr(cells, "Float32 x 6 [Pa]\n"));
+    ck_assert_ptr_nonnull(strstr(nodes, "Float32 x 3\n")); // none is told of these velocities
     free(text);
 }
 END_TEST

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Reads pictures back with VTK's own reader and says what it found, one fact a line.
 
-read_vtu.py FILE.vtu...        size, time, arrays with type, component names and range; error code of the reader
+read_vtu.py FILE.vtu...        size, time, arrays with type, component names and unit; error code of the reader
 read_vtu.py --pattern FILE...  besides compares every value with the pattern the test wrote
 read_vtu.py --elements FILE... the same of files with elements: types, volumes, values of nodes and of elements
 read_vtu.py --facts FILE...    size, range of every array, volume of all elements
@@ -33,7 +33,9 @@ def list_arrays(data, label):
         array = data.GetArray(i)
         n = array.GetNumberOfComponents()
         names = [str(array.GetComponentName(c)) for c in range(n)]
-        print(f"{label} {array.GetName()} {array.GetDataTypeAsString().replace(' ', '_')} {array.GetNumberOfTuples()} {','.join(names)}")
+        unit = array.GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL())
+        print(f"{label} {array.GetName()} {array.GetDataTypeAsString().replace(' ', '_')} {array.GetNumberOfTuples()} {','.join(names)}"
+              + (f" [{unit}]" if unit else ""))
 
 
 def active(data):
