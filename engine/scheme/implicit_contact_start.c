@@ -13,7 +13,7 @@
 #include "world/create.h"
 
 static const double WITHIN = 0.99;   // of the distance: nearer gaps have a force to speak of at the start
-static const double ROUNDING = 1e-9; // of the reach
+static const double ROUNDING = 1e-9; // of the reach, and of the distance
 
 #define TOO_DEEP "more than half the shortest edge in contact, %.4g m: surfaces do not know which way is out from there"
 
@@ -177,12 +177,13 @@ static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given,
     const double distance = c->opens ? c->distance : c->overlap_distance;
     const int status = look_at_start(c, world, &r, error);
     if (status || !(r.least_gap < WITHIN * distance || r.least_gap < -ROUNDING * c->reach)) return status;
+    const double closed = ROUNDING * distance; // what a turn leaves of none: no step could begin with its force
     char to[2 * BRUNT_NAME_LENGTH];
     if (r.plane >= 0)
         snprintf(to, sizeof to, "the plane '%s'", world->boundaries.boundary[c->plane_boundary[r.plane]].name);
     else
         snprintf(to, sizeof to, "bodies.%s", brunt_body_name(world, r.other));
-    if (r.least_gap > 0) {
+    if (r.least_gap > (r.overlaps ? 0 : closed)) {
         brunt_warn(&world->messages,
                    "bodies.%s begins with a gap of %.4g m to %s, at (%.6g, %.6g, %.6g) m: within contact.distance, "
                    "%.4g m%s, %s push; they store %.3g J at the start, all bodies move with %.3g J",
@@ -195,8 +196,8 @@ static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given,
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s has a gap of %.4g m to %s at the start, at (%.6g, %.6g, %.6g) m: barriers want more "
                       "than 0 m, %.4g m to begin without a force",
-                      brunt_body_name(world, r.body), r.least_gap + 0.0, to, r.position[0], r.position[1],
-                      r.position[2], c->distance);
+                      brunt_body_name(world, r.body), fabs(r.least_gap) > closed ? r.least_gap : 0, to, r.position[0],
+                      r.position[1], r.position[2], c->distance);
 }
 
 int brunt_implicit_contact_check(brunt_implicit_contact *c, brunt_world *world, const brunt_body_def **order,

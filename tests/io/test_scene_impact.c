@@ -410,6 +410,10 @@ START_TEST(closed_gaps_are_refused) {
          "mm, 4 mm]}}}}\n"
          "boundaries: [{name: floor, plane: {point: [0, 0, 0.5 mm], normal: [0, 0, 1]}, condition: separate}]\n",
          "bodies.b has a gap of -0.00025 m to the plane 'floor' at the start"},
+        {"bodies: {b: {method: fem, material: gum, size: 2 mm, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 "
+         "mm]}}}}\n"
+         "boundaries: [{name: floor, plane: {point: [0, 0, -1e-15], normal: [0, 0, 1]}, condition: separate}]\n",
+         "bodies.b has a gap of 0 m to the plane 'floor' at the start"},
         {"bodies: {b: {method: mpm, material: gum, particles_per_cell: 8, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 "
          "mm, 4 mm]}}}, c: {method: fem, material: gum, size: 2 mm, shape: {box: {min: [0, 0, 3.75 mm], max: [4 mm, 4 "
          "mm, 8 mm]}}}}\n",
