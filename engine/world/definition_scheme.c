@@ -166,7 +166,10 @@ static void look_at_points(const brunt_world_def *def, refusals *r) {
 static void look_at_contact(const brunt_world_def *def, refusals *r) {
     const brunt_contact_def *contact = &def->contact;
     set_owner(r, "contact");
-    if (contact->allow_overlap) say(r, ".initial_overlap", "allow: " EXPLICIT_ONLY ", barriers keep gaps open");
+    if (contact->allow_overlap)
+        say(r, ".initial_overlap", "allow: " EXPLICIT_ONLY ", %s",
+            brunt_contact_overlaps(contact->method) ? "penalties push apart what overlaps at the start without it"
+                                                    : "barriers keep gaps open");
     look_at_points(def, r);
 }
 
