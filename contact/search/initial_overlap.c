@@ -11,8 +11,6 @@
 #include "base/sweep.h"
 #include "mpm/particles.h"
 
-static const double DEEP =
-    0.2; // shorter mean edges of two: what is no deeper is met, and may be the facets of round bodies
 static const double BEHIND = 1e-3;    // edges or spacings: how far behind a plane a body is behind it
 static const double CUT = 1e-3;       // edges on either side from which on an edge goes through a facet ...
 static const double RIM = 1e-6;       // ... and share of a triangle that is its rim
@@ -128,6 +126,7 @@ static int fill_cells(cells *c, const box *bounds, double edge, int32_t items, b
 
 typedef struct search_job {
     const brunt_contact_context *m;
+    const brunt_overlap_rule *rule;
     int k;        // the other body, of the surface
     double by;    // its facets reach so much further than they are [m]
     double size;  // of what it is made of: its elements, or all of it [m]
@@ -397,7 +396,8 @@ static int look_at(search_job *j, int k, const box *other, double limit, double 
 // Finds out whether mesh `other` is in mesh or membrane `k`.
 static int meshes_overlap(search_job *j, int other, int k, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
-    const double edge = s->fem[other]->mean_edge, limit = DEEP * fmin(size_of_body(s, other), size_of_body(s, k));
+    const double edge = s->fem[other]->mean_edge,
+                 limit = j->rule->least * fmin(size_of_body(s, other), size_of_body(s, k));
     const box of_other = surface_box(s, other);
     const bool membrane = s->fem[k]->traits->membrane;
     if (look_at(j, k, &of_other, limit, membrane ? NEXT * edge : limit, error)) return BRUNT_FAILED;
@@ -416,6 +416,14 @@ static double extent_of(brunt_body *body, int64_t i) {
     return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][i];
 }
 
+static bool is_point(brunt_body *body, int64_t i) {
+    return brunt_field(&body->particles, BRUNT_FIELD_reference_volume)[0][i] > 0; // else it is padding
+}
+
+static double extent_in(const search_job *j, brunt_body *body, int64_t i) {
+    return j->rule->centres ? 0 : extent_of(body, i);
+}
+
 // Whether a particle's centre is in the solid, or so near its surface that its reach is.
 static bool point_is_deep(search_job *j, const double x[3], double extent) {
     double height;
@@ -431,7 +439,7 @@ static bool solid_holds_points(search_job *j, brunt_body *body) {
     double x[3];
     for (int64_t i = 0; i < body->particles.slots; i++) {
         particle_at(body, i, x);
-        if (point_is_deep(j, x, extent_of(body, i))) return true;
+        if (is_point(body, i) && point_is_deep(j, x, extent_in(j, body, i))) return true;
     }
     return false;
 }
@@ -442,8 +450,8 @@ static bool membrane_cuts_points(search_job *j, brunt_body *body) {
     for (int64_t i = 0; i < body->particles.slots; i++) {
         double x[3], height = 0;
         particle_at(body, i, x);
-        if (!holds(&j->facets.bounds, x)) continue;
-        const double d = distance(j, x, &height), depth = extent_of(body, i) - d;
+        if (!is_point(body, i) || !holds(&j->facets.bounds, x)) continue;
+        const double d = distance(j, x, &height), depth = extent_in(j, body, i) - d;
         if (!(height * height >= 0.5 * d * d)) continue; // beyond the border
         side[height > 0] = true;
         if (!(depth > j->found->depth)) continue;
@@ -459,11 +467,12 @@ static int points_overlap(search_job *j, brunt_body *body, int k, brunt_error *e
     const bool membrane = s->fem[k]->traits->membrane;
     box of_points = empty_box();
     double x[3];
-    if (!body->particles.field[BRUNT_FIELD_reach].components) return BRUNT_OK;
-    for (int64_t i = 0; i < body->particles.slots; i++) particle_at(body, i, x), widen(&of_points, x);
+    if (!j->rule->centres && !body->particles.field[BRUNT_FIELD_reach].components) return BRUNT_OK;
+    for (int64_t i = 0; i < body->particles.slots; i++)
+        if (is_point(body, i)) particle_at(body, i, x), widen(&of_points, x);
     const double by = (membrane ? NEXT : 1) * body->spacing;
     if (look_at(j, k, &of_points, -by, by, error)) return BRUNT_FAILED;
-    j->limit = DEEP * fmin(body->spacing, size_of_body(s, k));
+    j->limit = j->rule->least * fmin(body->spacing, size_of_body(s, k));
     j->found->any = j->shares && (membrane ? membrane_cuts_points(j, body) : solid_holds_points(j, body));
     return BRUNT_OK;
 }
@@ -566,7 +575,7 @@ static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count, brunt_e
     for (int64_t q = 0; q < count && !status && !j->found->any; q++) {
         const int k = list[q].mesh, i = list[q].other;
         const int b = s->fem[k]->index, a = i < s->fem_count ? s->fem[i]->index : mpm[i - s->fem_count].index;
-        if (brunt_pair_of(j->m->pair_map, a, b) < 0) continue;
+        if (!j->rule->meets(j->rule->self, a, b)) continue;
         *j->found = (brunt_overlap){.a = a, .b = b, .boundary = -1};
         status =
             i < s->fem_count ? meshes_overlap(j, i, k, error) : points_overlap(j, &mpm[i - s->fem_count], k, error);
@@ -576,8 +585,8 @@ static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count, brunt_e
 }
 
 int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int boundary_count,
-                       brunt_overlap *found, brunt_error *error) {
-    search_job j = {.m = m, .found = found};
+                       const brunt_overlap_rule *rule, brunt_overlap *found, brunt_error *error) {
+    search_job j = {.m = m, .rule = rule, .found = found};
     *found = (brunt_overlap){.b = -1, .boundary = -1};
     int status = find_in_meshes(&j, mpm, mpm_count, error);
     cells *made[] = {&j.elements, &j.facets};

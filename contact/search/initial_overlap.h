@@ -13,8 +13,16 @@ typedef struct brunt_overlap {
     double x[3];  // [m] there
 } brunt_overlap;
 
-// The first overlap of a mesh or membrane with another body that it has a pair with, or of any body with a plane of
-// condition separate, if there is `any`. Call with the surface of all bodies taken. BRUNT_OK, or BRUNT_FAILED: out of
-// memory.
+// What may lie in each other, and how deep.
+typedef struct brunt_overlap_rule {
+    bool (*meets)(const void *self, int32_t a, int32_t b); // whether two bodies, by their index among all, may not
+    const void *self;
+    double least; // [-] shares of an edge, or spacing: what is no deeper is no overlap
+    bool centres; // material points are their centres: they have no extent
+} brunt_overlap_rule;
+
+// The first overlap of a mesh or membrane with another body that it meets, or of any body with one of the first
+// `boundary_count` boundaries that is a plane of condition separate, if there is `any`. Call with the bounds and faces
+// of the surface of all bodies made. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int boundary_count,
-                       brunt_overlap *found, brunt_error *error);
+                       const brunt_overlap_rule *rule, brunt_overlap *found, brunt_error *error);

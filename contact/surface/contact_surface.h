@@ -155,6 +155,8 @@ void brunt_surface_free(brunt_contact_surface *surface);
 void brunt_surface_meshes(const brunt_contact_surface *surface, int body, int *first, int *end);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_surface_bounds(brunt_contact_surface *surface, int threads, brunt_timer *timer);
+// Bounds, places of nodes and faces of all bodies, which become active, and nothing of how they move.
+void brunt_surface_gather_places(brunt_contact_surface *surface, int threads, brunt_timer *timer);
 // The same while nothing is near, for a fraction of the work: bounds kept from an earlier step and widened by what the
 // nodes may have moved since, and speeds against space. With `anew` the bounds are looked at.
 void brunt_surface_rest(brunt_contact_surface *surface, bool anew, int threads, brunt_timer *timer);

@@ -178,6 +178,14 @@ static void gather_places(void *context, int64_t begin, int64_t end, int worker)
         if (!s->motion.was_active[k] || n >= s->node_end[k]) take_place(s, n, brunt_fem_node(s->fem[k], s->node[n]));
 }
 
+void brunt_surface_gather_places(brunt_contact_surface *s, int threads, brunt_timer *timer) {
+    job j = {.surface = s};
+    brunt_surface_bounds(s, threads, timer);
+    for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
+    brunt_parallel(threads, s->node_count, GRAIN, gather_places, &j, timer);
+    brunt_surface_make_faces(s, threads, timer);
+}
+
 static inline void make_normal(brunt_contact_surface *s, int k, int32_t n) {
     quad sum = {0};
     double area = 0, whole = 0, size = 0;

@@ -10,10 +10,12 @@
 #include "base/memory.h"
 #include "base/sweep.h"
 #include "contact/barrier/barrier_function.h"
+#include "contact/search/initial_overlap.h"
 #include "world/create.h"
 
 static const double WITHIN = 0.99;   // of the distance: nearer gaps have a force to speak of at the start
 static const double ROUNDING = 1e-9; // of the reach, and of the distance
+static const double CROSSED = 1e-3;  // edges: how deep bodies are in each other, beyond what warped facets leave open
 
 #define TOO_DEEP "more than half the shortest edge in contact, %.4g m: surfaces do not know which way is out from there"
 
@@ -98,6 +100,38 @@ static int check_shapes(const brunt_implicit_contact *c, const brunt_world *worl
     for (int64_t q = 0; q < count && !status; q++) status = check_near(c, world, order, &near[q], error);
     brunt_free(near), brunt_free(box);
     return status;
+}
+
+static bool keeps_apart(const void *contact, int32_t a, int32_t b) {
+    brunt_barrier_pair pair;
+    return brunt_implicit_contact_pair(contact, a < b ? a : b, a < b ? b : a, &pair) && !(pair.reach > 0);
+}
+
+// Of bodies of mesh files, and where facets of round bodies cross: by the meshes themselves.
+static int find_overlap(const brunt_implicit_contact *c, const brunt_world *world, brunt_contact_surface *s,
+                        brunt_overlap *found, brunt_error *error) {
+    brunt_surface_gather_places(s, world->settings.threads, NULL);
+    const brunt_contact_context m = {.surface = s, .body_count = world->bodies.count};
+    const brunt_overlap_rule rule = {.meets = keeps_apart, .self = c, .least = CROSSED, .centres = true};
+    return brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, 0, &rule, found, error);
+}
+
+static int check_meshes(const brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+    const int count = world->bodies.fem_count;
+    brunt_fem_body **fem;
+    brunt_contact_surface s = {0};
+    brunt_overlap o = {.any = false};
+    if (BRUNT_NEW(fem, count + 1, "meshes that may overlap", error)) return BRUNT_FAILED;
+    for (int k = 0; k < count; k++) fem[k] = &world->bodies.fem[k];
+    int status = brunt_surface_make(&s, fem, count, false, error);
+    if (!status && count) status = find_overlap(c, world, &s, &o, error);
+    brunt_surface_free(&s), brunt_free(fem);
+    if (status || !o.any) return status;
+    return brunt_fail(
+        error, BRUNT_BAD_INPUT,
+        "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m: barriers want a gap "
+        "of more than 0 m, of %.4g m to begin without a force",
+        brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2], c->distance);
 }
 
 // Material points as they begin, which nothing moves yet.
@@ -202,6 +236,7 @@ static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given,
 
 int brunt_implicit_contact_check(brunt_implicit_contact *c, brunt_world *world, const brunt_body_def **order,
                                  bool given, brunt_error *error) {
-    const int status = check_shapes(c, world, order, error);
+    int status = check_shapes(c, world, order, error);
+    if (!status && c->opens) status = check_meshes(c, world, error);
     return status ? status : check_gaps(c, world, given, error);
 }

@@ -13,6 +13,8 @@
 static const double COARSE = 1.25; // cells: edges of meshes that meet particles at grid nodes
 enum { GRID_SWEEPS = 8, TOUCH_SWEEPS = 64 };
 static const double THIN = 0.01; // mean edges
+static const double SHALLOW =
+    0.2; // shorter mean edges of two: what is no deeper is met, and may be the facets of round bodies
 
 static bool acts_on_fem(const brunt_world *world, const brunt_boundary *boundary) {
     if (!boundary->kind->meet_surface) return false;
@@ -154,13 +156,14 @@ static double half_spacing(const brunt_bodies *bodies, int body) {
     return mpm ? 0.5 * mpm->spacing : 0;
 }
 
+static bool meets(const void *pair_map, int32_t a, int32_t b) { return brunt_pair_of(pair_map, a, b) >= 0; }
+
 // Bodies that lie in each other, or behind a plane, at the start. The contact surface is taken for it, and forgets that
 // it was.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
     brunt_contact_surface *s = &world->contact.surface;
     brunt_contact_context m = {.surface = s,
-                               .pair_map = &world->pairs.map,
                                .body_count = world->bodies.count,
                                .boundaries = world->boundaries.boundary,
                                .acting = &world->boundaries.acting};
@@ -170,9 +173,10 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
         brunt_surface_gather_state(s, 0, none, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = s->motion.was_active[k] = false;
     }
+    const brunt_overlap_rule rule = {.meets = meets, .self = &world->pairs.map, .least = SHALLOW};
     brunt_overlap o;
-    const int status =
-        brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.boundary_count, &o, error);
+    const int status = brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count,
+                                          world->boundaries.boundary_count, &rule, &o, error);
     if (status || !o.any) return status;
     static const char way_out[] = "move one of them, or write contact.initial_overlap: allow";
     if (o.b < 0)

@@ -228,6 +228,58 @@ START_TEST(what_is_none) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------ barriers
+
+// Barriers know gaps, not insides: what lies in each other by however little would be kept there. Meshes that were
+// read.
+static void expect_barriers(brunt_world_def *def, const char *what, bool apart) {
+    def->scheme = BRUNT_IMPLICIT, def->step = 1e-3;
+    def->contact.method = BRUNT_CONTACT_BARRIER;
+    brunt_error error = {0};
+    brunt_world *world = brunt_world_create(def, &error);
+    printf("  %s: %s\n", what, error.message);
+    ck_assert_msg(apart == (world != NULL), "%s: %s", what, error.message);
+    if (!apart) ck_assert_msg(strstr(error.message, "overlaps bodies.") != NULL, "%s: %s", what, error.message);
+    brunt_world_destroy(world), brunt_world_def_free(def);
+}
+
+START_TEST(barriers_begin_outside) {
+    static const kind all[2][3] = {{QUAD, TRI, POINTS}, {HEX, TET, POINTS}};
+    for (int space = 0; space < 2; space++)
+        for (int k = 0; k < 9 * 2; k++) {
+            const kind lower = all[space][k % 3], upper = all[space][k / 3 % 3];
+            const bool swapped = k / 9;
+            if (lower == POINTS && upper == POINTS) continue;
+            char what[96];
+            snprintf(what, sizeof what, "%s on %s", kind_name[upper], kind_name[lower]);
+            brunt_world_def def = stack(lower, upper, 0.25, 0.01, space ? 0.3 : 0, swapped);
+            expect_barriers(&def, what, true);
+            const double centre = lower == POINTS || upper == POINTS ? 0.125 : 0; // of the outermost points
+            def = stack(lower, upper, 0.25, -0.01 - centre, space ? 0.3 : 0, swapped);
+            expect_barriers(&def, what, false);
+        }
+    for (int k = QUAD; k <= TET; k++) {
+        brunt_world_def def = stack(k, k, 0.125, -1, 0, false); // in the place of the other
+        expect_barriers(&def, kind_name[k], false);
+    }
+}
+END_TEST
+
+// Rings whose facets cross though their circles do not.
+START_TEST(facets_that_cross) {
+    brunt_world_def def = begin(2, 0.25);
+    for (int b = 0; b < 2; b++) {
+        brunt_body_def *ring = add(&def, b ? "b" : "a", QUAD, XYZ(0, 0, 0), XYZ(6.283, 0.2, 0), 0.2, true);
+        for (int32_t n = 0; n < ring->mesh.node_count; n++) {
+            double *x = ring->mesh.nodes[n];
+            const double r = (b ? 1.0005 : 0.7995) + x[1], t = x[0] * 0.7 + 0.1 * b; // not closed
+            x[0] = -r * cos(t), x[1] = r * sin(t);
+        }
+    }
+    expect_barriers(&def, "facets that cross", false);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("initial_overlap");
     ADD(one_in_the_other);
@@ -238,5 +290,7 @@ int main(void) {
     ADD(membranes_that_cross);
     ADD(behind_a_plane);
     ADD(what_is_none);
+    ADD(barriers_begin_outside);
+    ADD(facets_that_cross);
     return suite_main(suite);
 }
