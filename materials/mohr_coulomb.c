@@ -143,11 +143,14 @@ BRUNT_INLINE lanes equivalent_strain(const lanes flow[3]) {
 }
 
 // The cohesion at the end, where more of it means less flow: regula falsi in the Illinois form between that of the
-// start and that of the flow which it leaves. Lanes stop one by one.
-BRUNT_INLINE lanes hardened(const real *k, const sorted_trial *s, lanes start, lane_mask active, lanes flow[3]) {
+// start and that of the flow which it leaves, at most that with which nothing flows, `beyond` the start: above it the
+// faces would be drawn to the trial from within. Lanes stop one by one.
+BRUNT_INLINE lanes hardened(const real *k, const sorted_trial *s, lanes start, lanes beyond, lane_mask active,
+                            lanes flow[3]) {
     enum { STEPS = 60 };
     flow_at(k, s, start, flow);
-    lanes low = start, below = -k[HARDENING] * equivalent_strain(flow), high = start - below, c = low;
+    lanes low = start, below = -k[HARDENING] * equivalent_strain(flow), high = start + lanes_min(-below, beyond),
+          c = low;
     flow_at(k, s, high, flow);
     lanes above = high - start - k[HARDENING] * equivalent_strain(flow);
     active &= below < 0;
@@ -185,7 +188,7 @@ BRUNT_INLINE frictional_point point_at(int dim, const real *k, const lanes H[9],
     for (int i = 0; i < 3; i++) p.flow[i] = lanes_set(0);
     p.delta = lanes_set(0);
     if (lanes_any(p.plastic)) {
-        if (k[HARDENING] > 0) cohesion = hardened(k, &s, cohesion, p.plastic, flow);
+        if (k[HARDENING] > 0) cohesion = hardened(k, &s, cohesion, excess + pressed, p.plastic, flow);
         flow_at(k, &s, cohesion, flow);
         for (int i = 0; i < 3; i++)
             for (int r = 0; r < 3; r++)

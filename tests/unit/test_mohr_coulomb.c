@@ -154,6 +154,34 @@ START_TEST(returns_meet_their_conditions) {
 }
 END_TEST
 
+// However stiff hardening is: from a cohesion at which the first flow alone would take the strength above the trial's,
+// to one that leaves the trial as it is. Stress grows with it up to there.
+START_TEST(hardening_may_be_stiff) {
+    const double hardening[] = {0.1, 1, 2, 5, 100, 1e6, 1e20};
+    uint64_t seed = 11;
+    for (int n = 0; n < 2000; n++) {
+        double trial[3], e[3], flown = INFINITY;
+        for (int a = 0; a < 3; a++) trial[a] = 5e-3 * uniform(&seed), e[a] = expm1(trial[a]);
+        for (int k = 0; k < 7; k++) {
+            const value soil[] = {{"E", 1 * GPA},
+                                  {"nu", 0.3},
+                                  {"cohesion", 0.5 * MPA},
+                                  {"friction_angle", 0.5},
+                                  {"dilatancy_angle", n % 2 ? 0.2 : 0},
+                                  {"hardening", hardening[k] * GPA},
+                                  {NULL, 0}};
+            point p = make("mohr-coulomb", 2000, soil, NULL);
+            stretch(&p, e);
+            const double strain = state_of(&p, "plastic_strain");
+            if (k < 4) check_return(trial, &p);
+            ck_assert_double_le(strain, flown * (1 + TOLERANCE(1e-12, 1e-5)) + TOLERANCE(1e-17, 1e-9));
+            ck_assert_double_le(strain * fmin(hardening[k], 1e6), TOLERANCE(0.02, 0.03));
+            flown = strain;
+        }
+    }
+}
+END_TEST
+
 // Axes that are named otherwise: the same stresses and state under the new names, over a path.
 START_TEST(axes_have_no_order) {
     static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
@@ -241,6 +269,7 @@ int main(void) {
     tcase_set_timeout(all, 0);
     tcase_add_test(all, triaxial_strength);
     tcase_add_test(all, returns_meet_their_conditions);
+    tcase_add_test(all, hardening_may_be_stiff);
     tcase_add_test(all, axes_have_no_order);
     tcase_add_test(all, apex_opens_and_closes);
     tcase_add_test(all, dissipation_never_falls);
