@@ -109,9 +109,9 @@ static int watch_energy(brunt_world *world, int every, brunt_error *error) {
     if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
         return brunt_fail_step(&world->clock, NULL, error, "the kinetic energy is not a finite number");
     if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
-    if ((int64_t)now->steps % (every * FOLD_CHECK / ENERGY_CHECK) == 0 || now->time >= world->settings.end)
-        watch_folds(world);
-    if ((int64_t)now->steps % every != 0 || !isfinite(world->settings.given.energy_limit)) return BRUNT_OK;
+    const bool ends = now->time >= world->settings.end; // with less than that many steps behind the last look
+    if ((int64_t)now->steps % (every * FOLD_CHECK / ENERGY_CHECK) == 0 || ends) watch_folds(world);
+    if (((int64_t)now->steps % every != 0 && !ends) || !isfinite(world->settings.given.energy_limit)) return BRUNT_OK;
     return check_energy(world, error);
 }
 

@@ -116,11 +116,31 @@ START_TEST(out_of_nothing) {
 }
 END_TEST
 
+// A run that ends with fewer steps than that behind the last look is looked at as it ends.
+START_TEST(at_the_end) {
+    brunt_world_def def = def_begin(2, 0);
+    def.energy_limit = 0.1, def.step = 1e-4, def.end = 10.5 * def.step;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    brunt_body_def *b = def_box(&def, "box", XYZ(0, 0, 0), XYZ(0.2, 0.2, 0));
+    b->method = BRUNT_FEM, b->element = BRUNT_QUAD4, b->size = 0.05;
+    def_velocity(b, 3, 1, 0);
+    brunt_world *world = world_take(&def);
+    brunt_error error = {0};
+    world_steps(world, 5);
+    hasten(world, "bodies/box/nodes", (real)1.4142);
+    world_steps(world, 5);
+    ck_assert_int_eq(brunt_world_step(world, INFINITY, &error), BRUNT_FAILED);
+    ck_assert_ptr_nonnull(strstr(error.message, "the energy error is"));
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("energy_limit");
     ADD(at_rest);
     ADD(comes_and_goes);
     ADD(restart);
     ADD(out_of_nothing);
+    ADD(at_the_end);
     return suite_main(suite);
 }
