@@ -6,10 +6,12 @@
 #include "contact/methods/node_gap.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "contact/planes/followed.h"
 #include "contact/planes/symmetry.h"
 
 void brunt_node_gap_free(brunt_node_gap *g) {
@@ -28,18 +30,21 @@ int brunt_node_gap_begin(brunt_node_gap *g, int32_t count, const int nodes[2]) {
     return BRUNT_OK;
 }
 
-// Unit vector along n with the parts taken out that a body cut by symmetry planes cannot know: its image has no
-// particles.
-static bool make_unit(const brunt_contact_context *m, const brunt_node_side *a, int node, double n[3]) {
-    int local[3];
-    const brunt_grid *grid = &a->body->grid;
-    brunt_node_local(grid, node, local);
-    for (int k = 0; k < m->symmetry_count; k++) {
-        const int axis = m->symmetry[k].axis;
-        if (m->symmetry[k].sticks) continue; // the nodes behind it follow, and what is on it rests
-        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - m->symmetry[k].node;
-        if (away >= -1 && away <= 1) n[axis] = 0;
-    }
+// Takes out of n what a body cut by symmetry planes cannot know: its image has no particles. Behind planes that stick
+// the nodes follow, and what is on them rests.
+static void forget_across(const brunt_contact_context *m, const brunt_node_side *a, const brunt_body *body, int node,
+                          double n[3]) {
+    brunt_symmetry_plane plane[BRUNT_MAX_PLANES];
+    const int count = brunt_symmetry_of(m, body, plane);
+    int32_t at[3];
+    brunt_node_coordinates(&a->body->grid, a->slot, node, at);
+    for (int k = 0; k < count; k++)
+        if (!plane[k].sticks && abs(at[plane[k].axis] - plane[k].node) <= 1) n[plane[k].axis] = 0;
+}
+
+// Unit vector along n, but for that.
+static bool make_unit(const brunt_contact_context *m, const brunt_node_side sides[2], int node, double n[3]) {
+    for (int k = 0; k < 2 && m->symmetry_count; k++) forget_across(m, sides, sides[k].body, node, n);
     double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(size > 0) || !isfinite(size)) return false;
     for (int k = 0; k < 3; k++) n[k] /= size;

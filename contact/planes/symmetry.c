@@ -193,12 +193,21 @@ static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[
     }
 }
 
+// Whether one of the planes before it is at the same place: what its image has is in the sums already.
+static bool folded_before(const brunt_symmetry_plane *symmetry, int m) {
+    bool before = false;
+    for (int k = 0; k < m; k++)
+        before = before || (symmetry[k].axis == symmetry[m].axis && symmetry[k].node == symmetry[m].node);
+    return before;
+}
+
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
                          brunt_impulse_account *const *account, int threads, brunt_timer *timer) {
     if (!symmetry_count) return;
     bearing borne[CHUNKS], all = {.plane = symmetry, .count = symmetry_count, .taken = taken};
     for (int c = 0; c < CHUNKS; c++) borne[c] = all;
     for (int m = 0; m < symmetry_count; m++) {
+        if (folded_before(symmetry, m)) continue;
         fold_job job = {&body->grid, &symmetry[m], borne};
         brunt_parallel(threads, CHUNKS, 1, fold_chunks, &job, timer);
         for (int k = 0; k < m; k++) {
