@@ -246,6 +246,7 @@ BRUNT_INLINE j2_flow search(form f, const law_step *law, const j2_point *p, flow
         if (step == 0) start_by_rate(f, law, p, yield, root->active & (root->delta < (real)0.5 * from), root);
         root->active &= ~(lanes_abs(change) <= (real)SETTLED * lanes_min(from, root->delta));
     }
+    if (lanes_any(root->active)) j2_root_closed(p, root, &q);
     return (j2_flow){lanes_select(plastic, root->delta, lanes_set(0)), q};
 }
 

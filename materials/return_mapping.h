@@ -299,3 +299,13 @@ BRUNT_INLINE void j2_root_step(const j2_point *p, j2_root *root, lanes flow, lan
     }
     root->delta = lanes_select(root->active, next, root->delta);
 }
+
+// Lanes whose bracket has closed on less than changes the stress, without a root that can be told: the law rises
+// from its start by more than that within less than the least number there is, as a power of a small exponent does.
+// Nothing flows.
+BRUNT_INLINE void j2_root_closed(const j2_point *p, j2_root *root, lanes *q) {
+    const lane_mask closed = root->active & (p->stiffness * root->high <= J2_ROOT_TOLERANCE * p->q);
+    root->delta = lanes_select(closed, lanes_set(0), root->delta);
+    *q = lanes_select(closed, p->q, *q);
+    root->active &= ~closed;
+}

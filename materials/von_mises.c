@@ -28,9 +28,9 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
 }
 
 BRUNT_INLINE lanes flow_stress(const real *k, lanes plastic_strain, lanes *slope) {
-    lanes decay = lanes_exp(-k[RATE] * plastic_strain);
-    *slope = k[HARDENING] + k[RISE] * k[RATE] * decay;
-    return k[YIELD] + k[HARDENING] * plastic_strain + k[RISE] * (1 - decay);
+    const lanes risen = -lanes_expm1(-k[RATE] * plastic_strain); // with its digits where it is next to nothing yet
+    *slope = k[HARDENING] + k[RISE] * k[RATE] * (1 - risen);
+    return k[YIELD] + k[HARDENING] * plastic_strain + k[RISE] * risen;
 }
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, bool softens, const real *k,
