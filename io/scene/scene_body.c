@@ -116,6 +116,9 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     brunt_format_number(size.largest, b);
     if (body->size > size.largest * (1 + DECIMALS))
         brunt_tree_complain(reader->tree, edge, "the elements (%s m) are larger than the body (%s m)", a, b);
+    if (size.farthest / body->size > CELL_COUNT_LIMIT) // places of nodes would have lost too many digits
+        brunt_tree_complain_key(reader->tree, shape,
+                                "the body reaches more than 1e9 elements (of %s m) from the origin", a);
     // As many as cubes, or six times that of tetrahedra and twice of triangles.
     double cells = body->method == BRUNT_MEMBRANE ? size.surface / (body->size * body->size)
                                                   : size.volume / pow(body->size, reader->dimension);
