@@ -116,7 +116,12 @@ static int check_line(const brunt_boundary_surface *s, const brunt_boundary_surf
                               s->boundary->name);
         length += part;
     }
-    if (!(length / s->cell * fmax(def->particles, 1 / def->piece) < BRUNT_BOUNDARY_PARTICLE_LIMIT))
+    if (!(length / s->cell / def->piece < BRUNT_BOUNDARY_PARTICLE_LIMIT))
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "boundaries (%s).piece: pieces of %g cells would be %.3g on a line %.3g cells long: that is "
+                          "too many",
+                          s->boundary->name, def->piece, length / s->cell / def->piece, length / s->cell);
+    if (!(length / s->cell * def->particles < BRUNT_BOUNDARY_PARTICLE_LIMIT))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "boundaries (%s).line: %.3g cells long, with %d boundary particles in each: that is too many",
                           s->boundary->name, length / s->cell, def->particles);

@@ -610,7 +610,8 @@ START_TEST(through) {
 }
 END_TEST
 
-// Two lines in one place that go different ways: said with a name, the body's too.
+// Two lines in one place that go different ways: said with a name, the body's too. Pieces that would be too many: said
+// of them, not of the line.
 START_TEST(refuses) {
     brunt_world_def def = block(BRUNT_STICK, 1e-2, 0.02);
     def_line(&def, -2, 0.02, 3, 0.02, BRUNT_STICK)->value[1] = 1;
@@ -622,6 +623,11 @@ START_TEST(refuses) {
     ck_assert_ptr_nonnull(strstr(error.message, "find no end"));
     ck_assert_ptr_nonnull(strstr(error.message, "surface"));
     brunt_world_destroy(world);
+    def = block(BRUNT_STICK, 1e-2, 0.02);
+    def.surfaces[0].piece = 1e-20;
+    ck_assert_ptr_null(brunt_world_create(&def, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, ").piece: pieces of 1e-20 cells would be"));
+    brunt_world_def_free(&def);
 }
 END_TEST
 
