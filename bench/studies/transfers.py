@@ -23,7 +23,7 @@ CASES = (
     ("bar, ten periods, cfl 0.5", "axial_vibration", ["time.end=100 s", "time.cfl=0.5"], ("energy_kept",), 0),
     ("bar, ten periods, cfl 0.1", "axial_vibration", ["time.end=100 s", "time.cfl=0.1"], ("energy_kept",), 0),
     ("cube, twenty turns", "spinning_cube", [], ("kinetic_left", "angular_drift"), 0),
-    ("Taylor bar", "taylor_bar_mpm3d", ["time.cfl=0.5"], ("length", "foot_radius"), 0),
+    ("Taylor bar", "taylor_bar_mpm3d", ["time={end: 80 us}"], ("length", "foot_radius"), 0),  # steps are each transfer's own
     ("dam break", "dam_break", ["output.every=0.19 s"], ("front_slope", "floor_force"), 0.0028575),
     ("shock tube", "shock_tube_mpm", ["output.every=0.2 s"], ("density_error", "pressure_plateau"), 0.0025),
     ("plate impact", "plate_impact_copper_mpm", [], ("pressure", "front_at_3"), 0),
@@ -69,6 +69,8 @@ def main(names):
                 found = figures(scene, sets, measures, cell, transfer, folder)
             rows += [[name, transfer, figure, value] for figure, value in found.items()]
             print(name, transfer, found, flush=True)
+    order = [case[0] for case in CASES]
+    rows.sort(key=lambda row: order.index(row[0]))
     with open(HERE, "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["case", "transfer", "figure", "value"])
