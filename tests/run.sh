@@ -92,7 +92,8 @@ check "build" build release || finish
 if [ "$label" = long ]; then
     run build -L long
     if command -v clang >/dev/null; then
-        check "build under the thread sanitizer" build tsan --target test_determinism test_surfaces test_erosion_contact test_writer &&
+        check "build under the thread sanitizer" build tsan --target test_determinism test_surfaces test_erosion_contact test_writer \
+            test_node_lanes &&
             check "races" sh tests/support/races.sh build-tsan
     fi
     finish

@@ -24,3 +24,5 @@ race test_determinism bits
 race test_surfaces same_bits_for_threads_and_restart
 race test_erosion_contact same_bits
 race test_writer writer
+# No threads, but what GCC and others round each in their way: this is the one optimised build of another compiler.
+race test_node_lanes together
