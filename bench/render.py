@@ -101,13 +101,6 @@ def read_file(vtk, path):
     return reader.GetOutput()
 
 
-def file_unit(vtk, path, field):
-    """The unit that the file tells of the field, if any."""
-    grid = read_file(vtk, path)
-    array = grid.GetPointData().GetArray(field) or grid.GetCellData().GetArray(field)
-    return array.GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) if array else None
-
-
 def values_of(np, array, component, path, field):
     components = array.GetNumberOfComponents()
     from vtk.util.numpy_support import vtk_to_numpy
@@ -141,12 +134,13 @@ def is_mesh(grid):
 
 
 def load(vtk, np, args):
-    """Particles (places, values, radii) and the surfaces of meshes, of all files; the time of the last."""
-    particles, surfaces, time = [], [], None
+    """Particles (places, values, radii) and the surfaces of meshes, of all files; the time of the last; the field's unit."""
+    particles, surfaces, time, unit = [], [], None, None
     grids = [read_file(vtk, path) for path in args.files]
     coloured = [g.GetPointData().HasArray(args.field) or g.GetCellData().HasArray(args.field) for g in grids]
     for path, grid in zip(args.files, grids):
         array, at_points = find_field(grid, args.field, path, not any(coloured))
+        unit = unit or (array and array.GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()))
         stamp = grid.GetFieldData().GetArray("TimeValue")
         if stamp is not None and stamp.GetNumberOfTuples():
             time = stamp.GetTuple1(0)
@@ -164,7 +158,7 @@ def load(vtk, np, args):
     if not particles and not surfaces:
         fail(65, "the files hold nothing, or --cut leaves nothing")
     particles = [np.concatenate(column) for column in zip(*particles)] if particles else None
-    return particles, surfaces, time
+    return particles, surfaces, time, unit
 
 
 def particles_of(vtk, np, args, grid, values):
@@ -397,7 +391,7 @@ def surface_actor(vtk, args, surface, table, edges, scale):
 
 def make_scene(vtk, np, args, scale):
     from vtk.util.numpy_support import vtk_to_numpy
-    particles, surfaces, time = load(vtk, np, args)
+    particles, surfaces, time, unit = load(vtk, np, args)
     table = colour_table(vtk, args, *colour_range(np, args, particles, surfaces))
     table.SetNanColor(0.75, 0.75, 0.75)
     renderer = vtk.vtkRenderer()
@@ -414,8 +408,7 @@ def make_scene(vtk, np, args, scale):
     if args.links:
         renderer.AddActor(links_actor(vtk, np, args.links))
 
-    units = [unit for unit in (file_unit(vtk, path, args.field) for path in args.files) if unit]
-    unit = args.unit if args.unit is not None or not units else units[0]
+    unit = args.unit if args.unit is not None else unit
     title = args.title or args.field.replace("_", " ")
     if args.title is None and args.component != "magnitude":
         title += " " + args.component
