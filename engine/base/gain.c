@@ -79,16 +79,18 @@ static void decide(brunt_gain_size *s, double now, bool sure) {
     open_window(s);
 }
 
-void brunt_gain_begin_step(brunt_gain *gain, double now) { gain->begun = now; }
+void brunt_gain_begin_step(brunt_gain *gain, double now) { gain->begun = now, gain->work = 0; }
 
 // The first window, in which arrays grow and all is looked at anew, tells nothing of the steps that follow.
-void brunt_gain_end_step(brunt_gain *gain, double now) {
+void brunt_gain_end_step(brunt_gain *gain, double now, bool counts) {
     brunt_gain_size *s = &gain->steps;
-    s->phases++, s->expected += 1, s->taken += now - gain->begun;
+    const double taken = now - gain->begun;
     gain->begun = 0;
+    if (!counts) return;
+    s->phases++, s->expected += 1, s->taken += taken, gain->undecided += gain->work;
     if (!fills_window(s)) return;
-    const bool sure = s->together && s->taken < SURE * gain->work;
-    gain->work = 0;
+    const bool sure = s->together && s->taken < SURE * gain->undecided;
+    gain->undecided = 0;
     if (s->known) {
         add_window(s);
         decide(s, now, sure);

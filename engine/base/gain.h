@@ -28,7 +28,8 @@ typedef struct brunt_gain_size {
 // Zeroed at first.
 typedef struct brunt_gain {
     brunt_gain_size steps; // of which one is a unit of work; `together`: each phase as it has proved best
-    double begun, work;    // [s] when the step began, 0: there is none; of its phases, in all that are not decided on
+    double begun, work;    // [s] when the step began, 0: there is none; of its phases
+    double undecided;      // [s] work of the steps that are not decided on
     struct {
         brunt_task_fn *task;
         double cost; // [s] of work a unit; 0: not known
@@ -42,9 +43,10 @@ typedef struct brunt_gain_choice {
     double expected;    // [s] work; 0: not known
 } brunt_gain_choice;
 
-// A step begins, and ends. Phases outside of steps are measured by themselves.
+// A step begins, and ends; `counts`: its phases had all their threads. Phases outside of steps are measured by
+// themselves.
 void brunt_gain_begin_step(brunt_gain *gain, double now);
-void brunt_gain_end_step(brunt_gain *gain, double now);
+void brunt_gain_end_step(brunt_gain *gain, double now, bool counts);
 
 brunt_gain_choice brunt_gain_choose(const brunt_gain *gain, brunt_task_fn *task, int64_t count);
 

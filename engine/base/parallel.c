@@ -33,18 +33,14 @@ static _Thread_local brunt_gain gains; // of what this thread starts
 
 void brunt_parallel_adapt(bool on) { adapts = on; }
 
-void brunt_parallel_begin_step(int threads) {
-    if (adapts && threads > 1) brunt_gain_begin_step(&gains, brunt_clock());
-}
-
-void brunt_parallel_end_step(int threads) {
-    if (adapts && threads > 1) brunt_gain_end_step(&gains, brunt_clock());
-}
-
 static atomic_int lent;           // threads at work beside the phases
+static atomic_llong lends;        // how often that has changed
 static _Thread_local bool beside; // this one is such a thread
 
-static void lend(int threads) { atomic_fetch_add_explicit(&lent, threads, memory_order_relaxed); }
+static void lend(int threads) {
+    atomic_fetch_add_explicit(&lent, threads, memory_order_relaxed);
+    atomic_fetch_add_explicit(&lends, 1, memory_order_relaxed);
+}
 
 void brunt_parallel_beside(bool on) {
     if (on != beside) lend(on ? 1 : -1);
@@ -53,6 +49,24 @@ void brunt_parallel_beside(bool on) {
 
 void brunt_parallel_idle(bool on) {
     if (beside) lend(on ? -1 : 1);
+}
+
+// What `lends` was when the step began with all its threads; -1: with fewer.
+static _Thread_local long long lends_at_begin;
+
+void brunt_parallel_begin_step(int threads) {
+    if (!adapts || threads == 1) return;
+    const long long now = atomic_load_explicit(&lends, memory_order_relaxed);
+    lends_at_begin = atomic_load_explicit(&lent, memory_order_relaxed) ? -1 : now;
+    brunt_gain_begin_step(&gains, brunt_clock());
+}
+
+// With a thread fewer, steps that are shared take longer than they will when it is back.
+bool brunt_parallel_end_step(int threads) {
+    if (!adapts || threads == 1) return false;
+    const bool counts = atomic_load_explicit(&lends, memory_order_relaxed) == lends_at_begin;
+    brunt_gain_end_step(&gains, brunt_clock(), counts);
+    return counts;
 }
 
 // Of so many as are asked for, those that are not lent.

@@ -30,9 +30,10 @@ int brunt_threads_available(void);
 void brunt_parallel_adapt(bool on);
 
 // Begin and end of a step of a run on so many threads, all of whose steps do about the same: whether threads are left
-// out of all of its phases is measured, too. Of phases that are all used as they are asked for it does nothing.
+// out of all of its phases is measured, too. Of phases that are all used as they are asked for it does nothing. Whether
+// the step was measured: one that other threads were at work beside is not.
 void brunt_parallel_begin_step(int threads);
-void brunt_parallel_end_step(int threads);
+bool brunt_parallel_end_step(int threads);
 
 // This thread is at work beside the phases that others start, until it says off: they take one thread fewer each, one
 // at least, so that with it there are no more at work than were asked for.

@@ -226,7 +226,7 @@ static double take_steps(brunt_gain *gain, const mixture *m, bool marked, double
         const bool long_one = run_phase(gain, task, work, both, now) > 0;
         const double alone = (long_one ? m->far : 1) * m->size * SHORT, either[2] = {alone, 2 * alone};
         for (int k = 0; k < SHORT_PHASES; k++) run_phase(gain, short_task, alone, either, now);
-        if (marked) brunt_gain_end_step(gain, *now);
+        if (marked) brunt_gain_end_step(gain, *now, true);
         shared += long_one;
     }
     *share = (double)shared / (double)steps;
@@ -287,6 +287,62 @@ START_TEST(a_bad_begin_is_forgotten) {
 }
 END_TEST
 
+// While a file is written a thread is at work on that, and steps that are shared take longer than on one that has been
+// left alone: they tell nothing of those that follow, and the work in them does not, either.
+START_TEST(steps_beside_other_work_do_not_count) {
+    static const mixture lent = {1.05, 1, 4}, then = {0.52, 1.02, 4};
+    const double both[2] = {4 * LONG, lent.shared * 4 * LONG};
+    for (int k = 0; k < 20; k++) {
+        brunt_gain gain = {0};
+        double now = 1, share;
+        take_steps(&gain, &then, true, 0.01 * k, &now, &share);
+        brunt_gain before = gain;
+        for (int i = 0; i < 1000; i++) {
+            brunt_gain_begin_step(&gain, now);
+            run_phase(&gain, task, 4 * LONG, both, &now);
+            brunt_gain_end_step(&gain, now, false);
+        }
+        ck_assert_mem_eq(&gain.steps, &before.steps, sizeof before.steps);
+        ck_assert_double_eq(gain.undecided, before.undecided);
+        memcpy(gain.sizes, before.sizes, sizeof before.sizes);
+        memcpy(gain.tasks, before.tasks, sizeof before.tasks);
+        double others, then_now = now;
+        const double taken = take_steps(&gain, &then, true, 1, &now, &share),
+                     without = take_steps(&before, &then, true, 1, &then_now, &others);
+        ck_assert_double_eq_tol(taken, without, 1e-3);
+    }
+}
+END_TEST
+
+// Which steps those are: one that began so, one during which it began, or began and ended.
+START_TEST(work_beside_steps_is_noticed) {
+    brunt_parallel_begin_step(2);
+    ck_assert(!brunt_parallel_end_step(2)); // nothing is measured
+    brunt_parallel_adapt(true);
+    for (int k = 0; k < 32; k++) {
+        if (k & 1) brunt_parallel_beside(true);
+        brunt_parallel_begin_step(2);
+        if (k & 2) brunt_parallel_beside(!(k & 1));
+        if (k & 4) brunt_parallel_beside(false);
+        const bool others = k & 1 || k & 2, counts = brunt_parallel_end_step(2);
+        brunt_parallel_beside(false);
+        ck_assert(counts == !others);
+        brunt_parallel_begin_step(1);
+        ck_assert(!brunt_parallel_end_step(1));
+    }
+    // One that waits for the disk leaves its thread to them.
+    brunt_parallel_beside(true);
+    brunt_parallel_idle(true);
+    brunt_parallel_begin_step(2);
+    ck_assert(brunt_parallel_end_step(2));
+    brunt_parallel_begin_step(2);
+    brunt_parallel_idle(false);
+    ck_assert(!brunt_parallel_end_step(2));
+    brunt_parallel_beside(false);
+    brunt_parallel_adapt(false);
+}
+END_TEST
+
 // Steps all of whose work is shared are not tried on one thread.
 START_TEST(steps_are_sure) {
     brunt_gain gain = {0};
@@ -295,7 +351,7 @@ START_TEST(steps_are_sure) {
     for (int k = 0; k < 100000; k++) {
         brunt_gain_begin_step(&gain, now);
         ck_assert(run_phase(&gain, task, LONG, both, &now) > 0);
-        brunt_gain_end_step(&gain, now);
+        brunt_gain_end_step(&gain, now, true);
     }
 }
 END_TEST
@@ -449,6 +505,8 @@ int main(void) {
     tcase_add_test(tests, steps_count_as_a_whole);
     tcase_add_test(tests, steps_that_gain_are_shared);
     tcase_add_test(tests, steps_are_sure);
+    tcase_add_test(tests, steps_beside_other_work_do_not_count);
+    tcase_add_test(tests, work_beside_steps_is_noticed);
     tcase_add_test(tests, a_bad_begin_is_forgotten);
     tcase_add_test(tests, workers_begin_with_their_share);
     tcase_add_test(tests, workers_help_each_other);
