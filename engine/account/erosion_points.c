@@ -141,7 +141,7 @@ static brunt_point_energy energy_of(brunt_body *body, const int64_t *slots, int6
 
 static void account_loss(brunt_body *body, const int64_t *slots, int64_t count, brunt_eroded *account,
                          brunt_ledger *ledger) {
-    brunt_audit lost = brunt_slots_audit(body, slots, count);
+    brunt_audit lost = brunt_slots_audit(body, slots, 0, count);
     account->mass += lost.mass;
     account->energy += lost.kinetic;
     ledger->kinetic -= lost.kinetic;

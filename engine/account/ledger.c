@@ -42,7 +42,7 @@ static double rounding_stored(const brunt_bodies *bodies) {
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *body = &bodies->all[i];
         const double wave_speed = (double)body->ops->material(body)->wave_speed;
-        energy += body->ops->sums(body).mass * wave_speed * wave_speed;
+        energy += brunt_bodies_measure_of(bodies, body).sums.mass * wave_speed * wave_speed;
     }
     return STORED_ROUNDINGS * REAL_EPSILON * energy;
 }
@@ -53,11 +53,11 @@ static double rounding_energy(const brunt_bodies *bodies) {
     double energy = 0;
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *body = &bodies->all[i];
-        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, far = 0;
+        const brunt_body_measure m = brunt_bodies_measure_of(bodies, body);
         const int dim = body->ops->dim(body);
-        body->ops->bounds(body, low, high);
-        for (int a = 0; a < dim; a++) far = fmax(far, fmax(fabs(low[a]), fabs(high[a])));
-        const double mass = body->ops->sums(body).mass, size = body->ops->fineness(body);
+        double far = 0;
+        for (int a = 0; a < dim; a++) far = fmax(far, fmax(fabs(m.low[a]), fabs(m.high[a])));
+        const double mass = m.sums.mass, size = body->ops->fineness(body);
         const double wave_speed = (double)body->ops->material(body)->wave_speed;
         const double v = wave_speed * STEP_ROUNDINGS * REAL_EPSILON * far / size;
         energy += mass * v * v;
@@ -68,10 +68,11 @@ static double rounding_energy(const brunt_bodies *bodies) {
 void brunt_ledger_open(brunt_ledger *ledger, const brunt_accounts *accounts) {
     for (int i = 0; i < accounts->bodies->count; i++) {
         const brunt_body_ref *body = brunt_bodies_summed(accounts->bodies, i);
-        const brunt_audit a = body->ops->sums(body);
+        const brunt_body_measure m = brunt_bodies_measure_of(accounts->bodies, body);
+        const brunt_audit a = m.sums;
         *(body->mpm ? &ledger->kinetic : &ledger->fem_kinetic) += a.kinetic;
         ledger->initial_kinetic += a.kinetic;
-        ledger->initial_energy += a.kinetic + body->ops->energy(body).internal;
+        ledger->initial_energy += a.kinetic + m.energy.internal;
         ledger->scale_linear += a.scale_linear;
         ledger->scale_angular += a.scale_angular;
         for (int k = 0; k < 3; k++)
@@ -87,7 +88,7 @@ void brunt_ledger_open(brunt_ledger *ledger, const brunt_accounts *accounts) {
 static void add_bodies(const brunt_bodies *bodies, brunt_energy *energy) {
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *body = brunt_bodies_summed(bodies, i);
-        const brunt_point_energy e = brunt_bodies_energy(bodies, body);
+        const brunt_point_energy e = brunt_bodies_measure_of(bodies, body).energy;
         energy->internal += e.internal;
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
@@ -190,7 +191,7 @@ void brunt_ledger_momentum(const brunt_ledger *now, const brunt_accounts *accoun
     double linear_here = 0, angular_here = 0, linear = 0, angular = 0;
     for (int i = 0; i < accounts->bodies->count; i++) {
         const brunt_body_ref *body = brunt_bodies_summed(accounts->bodies, i);
-        const brunt_audit a = brunt_bodies_sums(accounts->bodies, body);
+        const brunt_audit a = brunt_bodies_measure_of(accounts->bodies, body).sums;
         for (int k = 0; k < 3; k++) momentum->linear[k] += a.linear[k], momentum->angular[k] += a.angular[k];
         linear_here += a.scale_linear;
         angular_here += a.scale_angular;

@@ -48,52 +48,64 @@ brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i) {
     return &bodies->all[points ? bodies->mpm[i].index : bodies->fem[i - bodies->mpm_count].index];
 }
 
-static void bound(const brunt_body_ref *body, brunt_body_measure *measure) {
-    for (int a = 0; a < 3; a++) measure->low[a] = INFINITY, measure->high[a] = -INFINITY;
-    body->ops->bounds(body, measure->low, measure->high);
+// ------------------------------------------------------------------------------------------ what they sum up to
+
+static const brunt_body_measure nothing = {.low = {INFINITY, INFINITY, INFINITY},
+                                           .high = {-INFINITY, -INFINITY, -INFINITY}};
+
+static void add_part(brunt_body_measure *to, const brunt_body_measure *part) {
+    brunt_audit_add(&to->sums, &part->sums);
+    to->energy.internal += part->energy.internal, to->energy.plastic += part->energy.plastic;
+    to->energy.viscosity += part->energy.viscosity, to->energy.heat += part->energy.heat;
+    for (int a = 0; a < 3; a++) {
+        to->low[a] = fmin(to->low[a], part->low[a]);
+        to->high[a] = fmax(to->high[a], part->high[a]);
+    }
 }
 
-// Two tasks a body. What sums up a mesh goes over its nodes as steps do, and writes them: nothing reads them meanwhile.
-static void measure_bodies(void *context, int64_t begin, int64_t end, int worker) {
+brunt_body_measure brunt_body_measure_of(const brunt_body_ref *body) {
+    brunt_body_measure sum = nothing;
+    for (int32_t p = 0; p < body->ops->parts(body); p++) {
+        brunt_body_measure part = nothing;
+        body->ops->measure(body, p, &part);
+        add_part(&sum, &part);
+    }
+    return sum;
+}
+
+static void measure_parts(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_bodies *bodies = context;
     for (int64_t t = begin; t < end; t++) {
-        const brunt_body_ref *body = &bodies->all[t / 2];
-        brunt_body_measure *measure = &bodies->measure[t / 2];
-        const bool first = t % 2 == 0;
-        if (first) {
-            measure->sums = body->ops->sums(body);
-            bound(body, measure);
-        }
-        if (first == (body->fem != NULL)) measure->energy = body->ops->energy(body);
+        brunt_body_part *part = &bodies->part[t];
+        const brunt_body_ref *body = &bodies->all[part->body];
+        part->measure = nothing;
+        body->ops->measure(body, part->part, &part->measure);
     }
 }
 
 void brunt_bodies_measure(brunt_bodies *bodies, int threads) {
-    if (!bodies->measure) bodies->measure = brunt_alloc(sizeof *bodies->measure * (size_t)bodies->count);
-    if (!bodies->measure) return;
-    brunt_parallel_each(threads, 2 * (int64_t)bodies->count, measure_bodies, bodies, NULL);
+    size_t count = 0;
+    brunt_error error;
+    for (int32_t b = 0; b < bodies->count; b++) {
+        const int32_t parts = bodies->all[b].ops->parts(&bodies->all[b]);
+        if (BRUNT_CAPACITY(bodies->part, count + (size_t)parts, count, "sums of bodies", &error)) return;
+        for (int32_t p = 0; p < parts; p++) bodies->part[count++] = (brunt_body_part){.body = b, .part = p};
+    }
+    if (BRUNT_CAPACITY(bodies->measure, (size_t)bodies->count, 0, "sums of bodies", &error)) return;
+    brunt_parallel_each(threads, (int64_t)count, measure_parts, bodies, NULL);
+    for (int b = 0; b < bodies->count; b++) bodies->measure[b] = nothing;
+    for (size_t t = 0; t < count; t++) add_part(&bodies->measure[bodies->part[t].body], &bodies->part[t].measure);
     bodies->measured = true;
 }
 
 void brunt_bodies_forget(brunt_bodies *bodies) { bodies->measured = false; }
 
-brunt_audit brunt_bodies_sums(const brunt_bodies *bodies, const brunt_body_ref *body) {
-    return bodies->measured ? bodies->measure[body - bodies->all].sums : body->ops->sums(body);
+brunt_body_measure brunt_bodies_measure_of(const brunt_bodies *bodies, const brunt_body_ref *body) {
+    return bodies->measured ? bodies->measure[body - bodies->all] : brunt_body_measure_of(body);
 }
 
-brunt_point_energy brunt_bodies_energy(const brunt_bodies *bodies, const brunt_body_ref *body) {
-    return bodies->measured ? bodies->measure[body - bodies->all].energy : body->ops->energy(body);
-}
-
-void brunt_bodies_measure_of(const brunt_bodies *bodies, const brunt_body_ref *body, brunt_body_measure *measure) {
-    if (bodies->measured) {
-        *measure = bodies->measure[body - bodies->all];
-        return;
-    }
-    measure->sums = body->ops->sums(body), measure->energy = body->ops->energy(body);
-    bound(body, measure);
-}
+// ------------------------------------------------------------------------------------------ blocks and arrays
 
 // Its fields, and what else it has.
 static int32_t arrays_of(const brunt_body_ref *body) {
@@ -143,6 +155,7 @@ void brunt_bodies_free(brunt_bodies *bodies) {
     brunt_free(bodies->tasks.element);
     brunt_free(bodies->tasks.sums);
     brunt_free(bodies->measure);
+    brunt_free(bodies->part);
 }
 
 void brunt_bodies_validate(const brunt_bodies *bodies) {

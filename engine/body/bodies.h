@@ -8,6 +8,13 @@
 
 typedef struct brunt_body_ops brunt_body_ops;
 
+// What is summed up of a body, or of a part of it.
+typedef struct brunt_body_measure {
+    brunt_audit sums;
+    brunt_point_energy energy;
+    double low[3], high[3]; // [m] INFINITY and less: nothing is left
+} brunt_body_measure;
+
 typedef struct brunt_body_ref {
     const brunt_body_ops *ops;
     brunt_body *mpm; // one of the two, the other is NULL
@@ -16,10 +23,10 @@ typedef struct brunt_body_ref {
 
 // What can be asked of a body, whatever it is made of: a table each for points and meshes.
 struct brunt_body_ops {
-    brunt_audit (*sums)(const brunt_body_ref *body); // mass, momenta, kinetic energy; centre, NAN without mass
-    brunt_point_energy (*energy)(const brunt_body_ref *body);
-    void (*bounds)(const brunt_body_ref *body, double low[3],
-                   double high[3]);               // [m]; INFINITY and less: nothing is left
+    // Into how many parts it is summed up, at least 1: by how large it is alone, so that sums are the same for any
+    // number of threads, and after a restart. And one of them.
+    int32_t (*parts)(const brunt_body_ref *body);
+    void (*measure)(const brunt_body_ref *body, int32_t part, brunt_body_measure *measure);
     uint64_t (*hash)(const brunt_body_ref *body); // to be added to that of the others
     const char *(*name)(const brunt_body_ref *body);
     const brunt_material *(*material)(const brunt_body_ref *body);
@@ -60,12 +67,11 @@ typedef struct brunt_fem_tasks {
     brunt_fem_sums *sums; // a node task each
 } brunt_fem_tasks;
 
-// What is summed up of a body.
-typedef struct brunt_body_measure {
-    brunt_audit sums;
-    brunt_point_energy energy;
-    double low[3], high[3]; // [m]
-} brunt_body_measure;
+// A part of what is summed up.
+typedef struct brunt_body_part {
+    int32_t body, part; // its number among those of the body
+    brunt_body_measure measure;
+} brunt_body_part;
 
 typedef struct brunt_bodies {
     brunt_body_ref *all; // in order of name
@@ -75,7 +81,9 @@ typedef struct brunt_bodies {
     brunt_fem_body *fem; // of elements, likewise
     int fem_count;
     brunt_mesh_report *mesh_reports; // a finite-element body each
-    brunt_body_measure *measure;     // of each, while they are `measured`; NULL: they never were
+    brunt_body_measure *measure;     // of each, while they are `measured`
+    brunt_body_part *part;           // of all, in order
+    size_t measure_capacity, part_capacity;
     bool measured;
     brunt_fem_tasks tasks;
     // Of each body its first block of the state and its first array; past the last how many they all have.
@@ -100,10 +108,10 @@ brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);
 // Where there is no memory for it, each is summed up when it is asked for, with the same result.
 void brunt_bodies_measure(brunt_bodies *bodies, int threads);
 void brunt_bodies_forget(brunt_bodies *bodies);
-// The measure of one, all of it or its sums or its energy alone.
-void brunt_bodies_measure_of(const brunt_bodies *bodies, const brunt_body_ref *body, brunt_body_measure *measure);
-brunt_audit brunt_bodies_sums(const brunt_bodies *bodies, const brunt_body_ref *body);
-brunt_point_energy brunt_bodies_energy(const brunt_bodies *bodies, const brunt_body_ref *body);
+// The measure of one of them.
+brunt_body_measure brunt_bodies_measure_of(const brunt_bodies *bodies, const brunt_body_ref *body);
+// The same of a body by itself.
+brunt_body_measure brunt_body_measure_of(const brunt_body_ref *body);
 // Numbers the blocks and the arrays of all, once their fields are there. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_bodies_number(brunt_bodies *bodies, brunt_error *error);
 // The body that block or array `index` is of, by where each begins; `count`, that of the bodies: of none.

@@ -15,9 +15,9 @@ void brunt_mesh_connectivity(const brunt_body_ref *ref, int32_t *out);
 // The row of a kind of body, of the functions of these names in its file.
 #define BRUNT_BODY_OPS(kind)                                                                                           \
     {                                                                                                                  \
-        .sums = sums, .energy = energy, .bounds = bounds, .hash = hash, .name = name, .material = material,            \
-        .method = method, .dim = dim, .fineness = fineness, .count = count, .stable_step = stable_step,                \
-        .first_step = first_step, .transit = transit, .field_count = brunt_##kind##_field_count,                       \
-        .field = brunt_##kind##_field, .read = brunt_##kind##_read, .validate = validate, .block_count = block_count,  \
-        .block_info = block_info, .block_get = block_get, .block_set = block_set                                       \
+        .parts = parts, .measure = measure, .hash = hash, .name = name, .material = material, .method = method,        \
+        .dim = dim, .fineness = fineness, .count = count, .stable_step = stable_step, .first_step = first_step,        \
+        .transit = transit, .field_count = brunt_##kind##_field_count, .field = brunt_##kind##_field,                  \
+        .read = brunt_##kind##_read, .validate = validate, .block_count = block_count, .block_info = block_info,       \
+        .block_get = block_get, .block_set = block_set                                                                 \
     }

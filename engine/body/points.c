@@ -17,17 +17,18 @@
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-static brunt_audit sums(const brunt_body_ref *ref) { return brunt_body_audit(ref->mpm); }
+// Particles of a part, more or less: a thread takes some fifty microseconds for them.
+enum { PART = 2048 };
 
-static brunt_point_energy energy(const brunt_body_ref *ref) { return brunt_body_energy(ref->mpm); }
+static int32_t parts(const brunt_body_ref *ref) { return 1 + (int32_t)((ref->mpm->particles.count - 1) / PART); }
 
-static void bounds(const brunt_body_ref *ref, double low[3], double high[3]) {
-    const brunt_particles *p = &ref->mpm->particles;
+// Bounds of slots begin .. end.
+static void bound(const brunt_particles *p, int64_t begin, int64_t end, double low[3], double high[3]) {
     real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
-    const int64_t whole = p->slots / BRUNT_LANES * BRUNT_LANES;
+    const int64_t whole = begin + (end - begin) / BRUNT_LANES * BRUNT_LANES;
     for (int a = 0; a < p->dim; a++) {
         lanes least = lanes_set(INFINITY), most = lanes_set(-INFINITY);
-        for (int64_t s = 0; s < whole; s += BRUNT_LANES) {
+        for (int64_t s = begin; s < whole; s += BRUNT_LANES) {
             lane_mask real_one = {0}; // else padding, or left in the last step
             for (int l = 0; l < BRUNT_LANES; l++) real_one[l] = p->id[s + l] >= 0 ? -1 : 0;
             const lanes at = lanes_load(x[a] + s);
@@ -35,9 +36,25 @@ static void bounds(const brunt_body_ref *ref, double low[3], double high[3]) {
             most = lanes_max(lanes_select(real_one, at, most), most);
         }
         low[a] = fmin(low[a], (double)lanes_min_of(least)), high[a] = fmax(high[a], (double)lanes_max_of(most));
-        for (int64_t s = whole; s < p->slots; s++)
+        for (int64_t s = whole; s < end; s++)
             if (p->id[s] >= 0) low[a] = fmin(low[a], (double)x[a][s]), high[a] = fmax(high[a], (double)x[a][s]);
     }
+}
+
+// The first slot of block b; past the last one that of what comes after it.
+static int64_t first_slot(const brunt_body *body, int32_t b) {
+    return b < body->grid.block_count ? body->grid.blocks[b].first : body->particles.slots;
+}
+
+// A part has whole blocks: how much room there is in these may be another after a restart.
+static void measure(const brunt_body_ref *ref, int32_t part, brunt_body_measure *measure) {
+    brunt_body *body = ref->mpm;
+    const int64_t all = body->grid.block_count, count = parts(ref);
+    const int32_t begin = (int32_t)(all * part / count), end = (int32_t)(all * (part + 1) / count);
+    const int64_t first = part ? first_slot(body, begin) : 0, last = first_slot(body, end);
+    measure->sums = brunt_slots_audit(body, NULL, first, last);
+    measure->energy = brunt_body_energy(body, begin, end);
+    bound(&body->particles, first, last, measure->low, measure->high);
 }
 
 static uint64_t hash(const brunt_body_ref *ref) {

@@ -37,9 +37,9 @@ static void take_range(const brunt_boundary_surface *s, const brunt_bodies *bodi
     range[0] = INFINITY, range[1] = -INFINITY;
     for (int b = 0; b < bodies->count; b++) {
         const brunt_body_ref *body = &bodies->all[b];
-        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
         if (!body->mpm || !brunt_boundary_surface_acts(s, body->mpm)) continue;
-        body->ops->bounds(body, low, high);
+        const brunt_body_measure m = brunt_body_measure_of(body);
+        const double *low = m.low, *high = m.high;
         if (!(low[0] <= high[0])) continue;
         double middle = 0, half = 0;
         for (int a = 0; a < body->mpm->particles.dim; a++) {

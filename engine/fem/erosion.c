@@ -296,7 +296,7 @@ brunt_fem_share brunt_fem_single_look(brunt_fem_single *one, const brunt_fem_bod
     one->block = (brunt_fem_block){.count = 1, .node_count = body->traits->nodes, .length = body->block[b].length};
     one->report = (brunt_fem_report){.bad = -1, .wave_speed = body->report[b].wave_speed};
     body->element->forces(&one->body, 0, 0, work, &one->report);
-    return (brunt_fem_share){.energy = brunt_fem_energy(&one->body),
+    return (brunt_fem_share){.energy = brunt_fem_energy(&one->body, 0, 1),
                              .hourglass_stored = one->report.hourglass_stored,
                              .half_work = 0.5 * brunt_fem_stress_work(&one->body, 0, dt),
                              .stable_step = one->report.stable_step};

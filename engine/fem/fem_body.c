@@ -383,9 +383,9 @@ brunt_material_points brunt_fem_points(brunt_fem_body *body, brunt_component com
     return points;
 }
 
-brunt_point_energy brunt_fem_energy(brunt_fem_body *body) {
+brunt_point_energy brunt_fem_energy(brunt_fem_body *body, int32_t begin, int32_t end) {
     brunt_point_energy energy = {0};
-    for (int32_t b = 0; b < body->block_count; b++) {
+    for (int32_t b = begin; b < end; b++) {
         const brunt_fem_block *block = &body->block[b];
         int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {

@@ -242,8 +242,8 @@ int32_t brunt_fem_folded(const brunt_fem_body *body);
 // stretch and Kirchhoff stress: none across the membrane. The area that stress acts on has `thickness` times the
 // stretch across.
 void brunt_membrane_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]);
-// Stored and dissipated energy of all elements [J], without the hourglass modes.
-brunt_point_energy brunt_fem_energy(brunt_fem_body *body);
+// Stored and dissipated energy of the elements of blocks [begin, end) [J], without the hourglass modes.
+brunt_point_energy brunt_fem_energy(brunt_fem_body *body, int32_t begin, int32_t end);
 // Internal force on a node [N], from the partial forces.
 static inline void brunt_fem_internal_force(const brunt_fem_body *body, int32_t node, real force[3]) {
     force[0] = force[1] = force[2] = 0;
@@ -281,8 +281,8 @@ void brunt_fem_kick(brunt_fem_body *body, int32_t begin, int32_t end, double dt,
                     brunt_fem_sums *sums);
 // Moves nodes [begin, end) by dt v. Fills its part of `sums`, leaves the rest.
 void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, brunt_fem_sums *sums);
-// The sums of a whole body as it is: mass, momenta, kinetic energy.
-brunt_fem_sums brunt_fem_audit(brunt_fem_body *body);
+// The sums of nodes [begin, end) as they are: mass, momenta, kinetic energy.
+brunt_fem_sums brunt_fem_audit(brunt_fem_body *body, int32_t begin, int32_t end);
 
 // The faces of a body's surface: those that only one element has. Nodes (of this body) as in brunt_element.face, the
 // 4th is -1 for triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face. Of a membrane, each of

@@ -41,7 +41,7 @@ void brunt_fem_kick(brunt_fem_body *body, int32_t begin, int32_t end, double dt,
     store3(sums->momentum_old, momentum);
 }
 
-void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, brunt_fem_sums *sums) {
+BRUNT_INLINE void drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, bool moves, brunt_fem_sums *sums) {
     double4 first = {0}, momentum = {0}, kinetic = {0}, angular = {0};
     double mass_sum = 0, linear = 0, turning = 0, fastest = 0;
     for (int32_t n = begin; n < end; n++) {
@@ -63,7 +63,7 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
         turning += m * sqrt(v2 * x2);
         if (v2 > fastest) fastest = v2;
         x[3] = mass;
-        real4_store(node, x);
+        if (moves) real4_store(node, x);
     }
     sums->mass = mass_sum;
     store3(sums->first_moment, first);
@@ -75,8 +75,12 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
     sums->speed = sqrt(fastest);
 }
 
-brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem) {
+void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, brunt_fem_sums *sums) {
+    drift(body, begin, end, dt, true, sums);
+}
+
+brunt_fem_sums brunt_fem_audit(brunt_fem_body *body, int32_t begin, int32_t end) {
     brunt_fem_sums sums = {0};
-    brunt_fem_drift(fem, 0, fem->node_count, 0, &sums);
+    drift(body, begin, end, 0, false, &sums);
     return sums;
 }

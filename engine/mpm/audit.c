@@ -32,7 +32,7 @@ static double total(const exact_sum *of) {
 }
 
 typedef struct audit_sums {
-    exact_sum mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular;
+    exact_sum mass, kinetic, linear[3], angular[3], moment[3], scale_linear, scale_angular;
 } audit_sums;
 
 // Where up to BRUNT_DOUBLES particles are: all behind `first`, or one by one in `slots`.
@@ -109,12 +109,12 @@ BRUNT_INLINE void add_group(audit_sums *to, brunt_body *body, const group *g, in
     add(&to->scale_linear, m * doubles_sqrt(square));
     if (brunt_axisymmetric(p)) { // the circle's sums; only sizes are left of what cancels
         add(&to->linear[1], m * V[1]);
-        add(&to->centre[1], m * X[1]);
+        add(&to->moment[1], m * X[1]);
         return;
     }
     for (int k = 0; k < dim; k++) {
         add(&to->linear[k], m * V[k]);
-        add(&to->centre[k], m * X[k]);
+        add(&to->moment[k], m * X[k]);
         size += X[k] * X[k];
     }
     for (int k = dim == 2 ? 2 : 0; k < 3; k++) {
@@ -132,35 +132,34 @@ static brunt_audit read_sums(const audit_sums *sums) {
     for (int k = 0; k < 3; k++) {
         a.linear[k] = total(&sums->linear[k]);
         a.angular[k] = total(&sums->angular[k]);
-        a.centre[k] = a.mass > 0 ? total(&sums->centre[k]) / a.mass : 0;
+        a.moment[k] = total(&sums->moment[k]);
     }
     return a;
 }
 
 // The next particles, BRUNT_DOUBLES of them while there are as many, from place `*n` on of `slots` (NULL: of all):
 // whatever padding lies between, they are the same together.
-BRUNT_INLINE group next_group(const brunt_particles *p, const int64_t *slots, int64_t count, int64_t *n,
+BRUNT_INLINE group next_group(const brunt_particles *p, const int64_t *slots, int64_t end, int64_t *n,
                               int64_t here[BRUNT_DOUBLES]) {
-    group g = {.whole = !slots && *n + BRUNT_DOUBLES <= count, .first = *n, .slots = here, .count = BRUNT_DOUBLES};
+    group g = {.whole = !slots && *n + BRUNT_DOUBLES <= end, .first = *n, .slots = here, .count = BRUNT_DOUBLES};
     for (int l = 0; g.whole && l < BRUNT_DOUBLES; l++) g.whole = p->id[*n + l] >= 0;
     if (g.whole) {
         *n += BRUNT_DOUBLES;
         return g;
     }
-    for (g.count = 0; g.count < BRUNT_DOUBLES && *n < count; ++*n) {
+    for (g.count = 0; g.count < BRUNT_DOUBLES && *n < end; ++*n) {
         const int64_t s = slots ? slots[*n] : *n;
         if (p->id[s] >= 0) here[g.count++] = s; // else padding, or left in the last step
     }
     return g;
 }
 
-// `slots` NULL: the first ones.
-BRUNT_INLINE brunt_audit sum_slots(brunt_body *body, const int64_t *slots, int64_t count, int dim) {
+BRUNT_INLINE brunt_audit sum_slots(brunt_body *body, const int64_t *slots, int64_t begin, int64_t end, int dim) {
     audit_sums sums;
     memset(&sums, 0, sizeof sums);
-    for (int64_t n = 0; n < count;) {
+    for (int64_t n = begin; n < end;) {
         int64_t here[BRUNT_DOUBLES];
-        const group g = next_group(&body->particles, slots, count, &n, here);
+        const group g = next_group(&body->particles, slots, end, &n, here);
         if (g.whole)
             add_group(&sums, body, &(group){.whole = true, .first = g.first, .count = BRUNT_DOUBLES}, dim);
         else if (g.count)
@@ -169,8 +168,17 @@ BRUNT_INLINE brunt_audit sum_slots(brunt_body *body, const int64_t *slots, int64
     return read_sums(&sums);
 }
 
-brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t count) {
-    return body->particles.dim == 3 ? sum_slots(body, slots, count, 3) : sum_slots(body, slots, count, 2);
+brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t begin, int64_t end) {
+    return body->particles.dim == 3 ? sum_slots(body, slots, begin, end, 3) : sum_slots(body, slots, begin, end, 2);
 }
 
-brunt_audit brunt_body_audit(brunt_body *body) { return brunt_slots_audit(body, NULL, body->particles.slots); }
+brunt_audit brunt_body_audit(brunt_body *body) { return brunt_slots_audit(body, NULL, 0, body->particles.slots); }
+
+void brunt_audit_add(brunt_audit *to, const brunt_audit *part) {
+    to->mass += part->mass, to->kinetic += part->kinetic;
+    to->scale_linear += part->scale_linear, to->scale_angular += part->scale_angular;
+    for (int k = 0; k < 3; k++) {
+        to->linear[k] += part->linear[k], to->angular[k] += part->angular[k];
+        to->moment[k] += part->moment[k];
+    }
+}

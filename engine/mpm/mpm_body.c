@@ -39,9 +39,9 @@ brunt_material_points brunt_body_points(brunt_body *body, brunt_component compon
     return points;
 }
 
-brunt_point_energy brunt_body_energy(brunt_body *body) {
+brunt_point_energy brunt_body_energy(brunt_body *body, int32_t begin, int32_t end) {
     brunt_point_energy energy = {0};
-    for (int32_t b = 0; b < body->grid.block_count; b++) {
+    for (int32_t b = begin; b < end; b++) {
         const brunt_block *block = &body->grid.blocks[b];
         int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {

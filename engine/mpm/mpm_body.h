@@ -52,8 +52,8 @@ void brunt_body_mark_reached(const brunt_body *body, uint8_t *mark);
 
 // Views particles `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
 brunt_material_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
-// Stored and dissipated energy of all particles [J].
-brunt_point_energy brunt_body_energy(brunt_body *body);
+// Stored and dissipated energy of the particles of blocks [begin, end) [J].
+brunt_point_energy brunt_body_energy(brunt_body *body, int32_t begin, int32_t end);
 // Bounds of the particles of block b [m]; of total-Lagrangian bodies they are not where the block is.
 void brunt_body_block_bounds(const brunt_body *body, int32_t b, double low[3], double high[3]);
 // How many cells wide what a particle stands for has become at most: (J V0)^(1/dim) / h.

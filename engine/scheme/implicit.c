@@ -64,7 +64,7 @@ static int commit_meshes(brunt_world *world, brunt_error *error) {
         brunt_fem_body *fem = &world->bodies.fem[k];
         if (brunt_fem_commit(m->fem[k], &m->team, m->field.u, brunt_implicit_velocity(m), world->scratch.meshes, error))
             return brunt_fail_inner(&world->clock, NULL, error);
-        world->ledger.fem_kinetic += brunt_fem_audit(fem).kinetic;
+        world->ledger.fem_kinetic += brunt_fem_audit(fem, 0, fem->node_count).kinetic;
         for (int32_t b = 0; b < fem->block_count; b++) stored += fem->report[b].hourglass_stored;
     }
     world->ledger.hourglass_stored = stored;

@@ -184,7 +184,7 @@ static int look_at_start(brunt_implicit_contact *c, const brunt_world *world, br
 // [J]
 static double kinetic_energy(const brunt_bodies *bodies) {
     double sum = 0;
-    for (int b = 0; b < bodies->count; b++) sum += bodies->all[b].ops->sums(&bodies->all[b]).kinetic;
+    for (int b = 0; b < bodies->count; b++) sum += brunt_bodies_measure_of(bodies, &bodies->all[b]).sums.kinetic;
     return sum;
 }
 

@@ -210,7 +210,7 @@ static void account_gravity_moment(brunt_ledger *ledger, brunt_body *body, const
     const brunt_audit audit = brunt_body_audit(body);
     for (int a = 0; a < 3; a++) {
         const int k = (a + 1) % 3, l = (a + 2) % 3;
-        ledger->gravity_angular[a] += dt * audit.mass * (audit.centre[k] * gravity[l] - audit.centre[l] * gravity[k]);
+        ledger->gravity_angular[a] += dt * (audit.moment[k] * gravity[l] - audit.moment[l] * gravity[k]);
     }
 }
 

@@ -69,7 +69,9 @@ static const char *what_makes(const brunt_world *world) {
 
 static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
+    brunt_bodies_measure(&world->bodies, world->settings.threads);
     brunt_world_energy(world, &energy);
+    brunt_bodies_forget(&world->bodies);
     // Energy that transfers or an integrator make is as wrong as energy that is not accounted for.
     const double limit = world->settings.given.energy_limit;
     const double transfers = made_share(&energy, world->ledger.transfer),

@@ -229,15 +229,14 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
 }
 
 void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {
-    brunt_body_measure measure;
-    brunt_bodies_measure_of(&world->bodies, &world->bodies.all[index], &measure);
+    const brunt_body_measure measure = brunt_bodies_measure_of(&world->bodies, &world->bodies.all[index]);
     const brunt_audit a = measure.sums;
     const brunt_point_energy e = measure.energy;
     *sums = (brunt_body_sums){.mass = a.mass, .kinetic = a.kinetic, .internal = e.internal, .plastic = e.plastic};
     for (int k = 0; k < 3; k++) {
         const bool there = k < world->settings.dimension;
         sums->momentum[k] = a.linear[k];
-        sums->centre[k] = a.centre[k];
+        sums->centre[k] = a.mass > 0 ? a.moment[k] / a.mass : NAN;
         sums->velocity[k] = a.mass > 0 ? a.linear[k] / a.mass : 0;
         sums->low[k] = there ? measure.low[k] : 0, sums->high[k] = there ? measure.high[k] : 0;
     }

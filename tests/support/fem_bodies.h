@@ -164,7 +164,7 @@ static inline double greatest_stress(brunt_fem_body *body) {
 }
 
 static inline double energy_of(brunt_fem_body *body, const brunt_fem_report *report) {
-    return brunt_fem_energy(body).internal + report->hourglass_stored;
+    return brunt_fem_energy(body, 0, body->block_count).internal + report->hourglass_stored;
 }
 
 // The force on component i of node n is what the energy falls by along it, by central differences.

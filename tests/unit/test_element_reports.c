@@ -215,7 +215,7 @@ START_TEST(scales_are_sums_of_sizes) {
         }
         linear += (double)node[BRUNT_FEM_MASS] * sqrt(v2), angular += (double)node[BRUNT_FEM_MASS] * sqrt(x2 * v2);
     }
-    const brunt_fem_sums sums = brunt_fem_audit(&body);
+    const brunt_fem_sums sums = brunt_fem_audit(&body, 0, body.node_count);
     ck_assert_double_eq_tol(sums.scale_linear, linear, TOLERANCE(1e-12, 1e-5) * linear);
     ck_assert_double_eq_tol(sums.scale_angular, angular, TOLERANCE(1e-12, 1e-5) * angular);
     brunt_fem_free(&body);

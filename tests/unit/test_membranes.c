@@ -591,7 +591,7 @@ static hencky hencky_membrane(int m, int rings, double slope, double t) {
         if (body.element_id[s] == 0) brunt_membrane_stress(&body, s, sigma);
     result.deflection = (double)brunt_fem_node(&body, centre)[2] / slope;
     result.stress = 0.5 * (sigma[0] + sigma[1]) / stress;
-    result.hourglass = report.hourglass_stored / brunt_fem_energy(&body).internal;
+    result.hourglass = report.hourglass_stored / brunt_fem_energy(&body, 0, body.block_count).internal;
     brunt_fem_free(&body);
     return result;
 }

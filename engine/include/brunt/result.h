@@ -83,8 +83,8 @@ typedef struct brunt_body_sums {
     double kinetic, internal, plastic;                // [J]
     double low[3], high[3];                           // [m] bounds of its nodes, or of its particles' centres
 } brunt_body_sums;
-// Of what is left of body 0 <= `body` < brunt_body_count. Where nothing is: sums and velocity 0, centre of no use (0 of
-// material points, NAN of elements), low INFINITY and high -INFINITY (third components of two dimensions: bounds 0).
+// Of what is left of body 0 <= `body` < brunt_body_count. Where nothing is: sums and velocity 0, centre NAN,
+// low INFINITY and high -INFINITY (third components of two dimensions: bounds 0).
 void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
 // Where energy, momentum and totals of many bodies are asked for: sums all of them up once, by all threads, and answers
 // from that until it is told to forget. In between the world must not change. The numbers are the same.
