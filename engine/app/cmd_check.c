@@ -129,13 +129,26 @@ static void print_surfaces(const brunt_scene *scene, const brunt_world *world) {
     }
 }
 
-static void print_plan(brunt_world *world) {
+// Those that are on with the key that asked for each, and the names of the others.
+static void print_effects(brunt_world *world) {
+    enum { WIDTH = 100 };
     printf("effects\n");
     for (int32_t e = 0; e < brunt_effect_count(world); e++) {
-        brunt_effect effect = brunt_world_effect(world, e);
-        printf("  %-28s %-4s %s\n", effect.name, effect.on ? "on" : "off",
-               effect.on && effect.because ? effect.because : "");
+        const brunt_effect effect = brunt_world_effect(world, e);
+        if (effect.on) printf("  %-28s on   %s\n", effect.name, effect.because ? effect.because : "");
     }
+    int column = printf("  off:");
+    for (int32_t e = 0; e < brunt_effect_count(world); e++) {
+        const brunt_effect effect = brunt_world_effect(world, e);
+        if (effect.on) continue;
+        if (column + 1 + (int)strlen(effect.name) > WIDTH) column = printf("\n      ") - 1;
+        column += printf(" %s", effect.name);
+    }
+    putchar('\n');
+}
+
+static void print_plan(brunt_world *world) {
+    print_effects(world);
     printf("passes of a step\n");
     for (int32_t p = 0; p < brunt_pass_count(world); p++)
         printf("  %2d  %s\n", (int)p + 1, brunt_world_pass(world, p).name);

@@ -1,4 +1,4 @@
-// What the program does before it does anything: libraries that it loads, how long threads are to spin.
+// What the program does before it does anything: libraries that it loads, how long threads are to spin, its plan.
 #include "tests/support/small_program.h"
 
 // The loader's list, without a run. MUMPS, and the BLAS that starts threads, are loaded where matrices are factored;
@@ -24,6 +24,25 @@ START_TEST(short_spins) {
 }
 END_TEST
 
+// Each effect is on, with what asked for it, or among those that are off: as in the summary of the run.
+START_TEST(plans_have_each_effect_once) {
+    small_put("small.yaml", small_scene_text);
+    ck_assert_int_eq(small_shell("$B check small.yaml --quick -t 1 | awk '/^passes/ {exit}\n"
+                                 "in_list {if ($2 == \"on\") print $1, \"true\"; else\n"
+                                 "  for (i = 1; i <= NF; i++) if ($i != \"off:\") print $i, \"false\"}\n"
+                                 "/^effects/ {in_list = 1}' | sort > plan; test -s plan"),
+                     0);
+    ck_assert_int_eq(small_shell("$B run small.yaml -o out -q -t 1 && sed -n '/\"effects\"/,/}/p' out/summary.json | "
+                                 "grep -oE '\"[a-z_]+\": (true|false)' | tr -d '\":' | sort > list && cmp plan list"),
+                     0);
+    ck_assert_int_eq(small_shell("grep -q true plan && grep -q false plan"), 0);
+    ck_assert_int_eq(
+        small_shell("$B check small.yaml --quick -t 1 | awk 'length > 100 && /^  off|^      [a-z_]+ [a-z_]+ /"
+                    " {exit 1}'"),
+        0);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_start");
     TCase *tests = tcase_create("start");
@@ -31,6 +50,7 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, few_libraries);
     tcase_add_test(tests, short_spins);
+    tcase_add_test(tests, plans_have_each_effect_once);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
