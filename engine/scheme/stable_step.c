@@ -120,6 +120,23 @@ static double choose_step(const brunt_world *world, double limit) {
     return left / ceil(left / dt * (1 - 1e-9));
 }
 
+static int refuse_fixed(brunt_world *world, double stable, brunt_error *error) {
+    char reason[240];
+    snprintf(reason, sizeof reason,
+             "the fixed step of %.6g s is larger than the stable one, %.6g s; time.cfl, a share of the stable one, "
+             "is what explicit steps go by where it is given beside time.step",
+             world->settings.fixed_step, stable);
+    return brunt_fail_short(world, stable, error, reason);
+}
+
+int brunt_check_fixed_step(brunt_world *world, brunt_error *error) {
+    const double stable = world->clock.next_dt / world->settings.cfl;
+    if (!(world->settings.fixed_step > stable)) return BRUNT_OK;
+    brunt_error told = {.id = -1};
+    refuse_fixed(world, stable, &told);
+    return brunt_fail(error, BRUNT_BAD_INPUT, "time.step: %s", told.message);
+}
+
 static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
     const double stable = world->clock.next_dt / world->settings.cfl;
     if (world->clock.time >= world->settings.end)
@@ -135,13 +152,7 @@ static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
                  world->settings.given.least_step);
         return brunt_fail_short(world, stable, error, reason);
     }
-    if (world->settings.fixed_step > 0 && dt > stable) {
-        snprintf(reason, sizeof reason,
-                 "the fixed step of %.6g s is larger than the stable one, %.6g s; time.cfl, a share of the stable one, "
-                 "is what explicit steps go by where it is given beside time.step",
-                 world->settings.fixed_step, stable);
-        return brunt_fail_short(world, stable, error, reason);
-    }
+    if (world->settings.fixed_step > 0 && dt > stable) return refuse_fixed(world, stable, error);
     if (world->clock.time + dt == world->clock.time)
         return brunt_fail_step(&world->clock, NULL, error, "the stable step has become too small to advance the time");
     return BRUNT_OK;

@@ -180,6 +180,7 @@ static int finish_explicit(brunt_world *world, const brunt_world_def *def, brunt
     if (!status)
         status = brunt_boundary_surfaces_sides(&world->boundaries.surfaces, &world->bodies, def->contact.allow_overlap,
                                                error);
+    if (!status) status = brunt_check_fixed_step(world, error);
     if (!status) warn_of_lone_points(world);
     return status;
 }

@@ -99,3 +99,5 @@ brunt_accounts brunt_accounts_of(const brunt_world *world);
 
 // Largest stable step from the bodies' reports times cfl [s].
 double brunt_stable_step(const brunt_world *world);
+// A step of explicit steps that is given, at the start: BRUNT_OK, or BRUNT_BAD_INPUT: it is longer than the stable one.
+int brunt_check_fixed_step(brunt_world *world, brunt_error *error);

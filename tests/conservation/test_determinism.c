@@ -339,6 +339,11 @@ START_TEST(nothing_is_left) {
     ck_assert_uint_eq(brunt_memory_live(), live);
     def = impact(2 + _i, 8, 1);
     def.step = 1e-3; // far above the stable one
+    const size_t defined = brunt_memory_live();
+    ck_assert_ptr_null(brunt_world_create(&def, &error));
+    ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
+    ck_assert_uint_eq(brunt_memory_live(), defined);
+    def.step = 0, def.least_step = 1e-3;
     world = world_take(&def);
     ck_assert_int_eq(brunt_world_step(world, INFINITY, &error), BRUNT_FAILED);
     brunt_world_destroy(world);

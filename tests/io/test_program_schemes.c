@@ -66,11 +66,13 @@ START_TEST(step_too_long) {
     small_put("small.yaml", scene);
     ck_assert_int_eq(small_shell("sed 's/, cfl: 0.5//' small.yaml > long.yaml"), 0);
     small_expect(
-        "check long.yaml --quick --set time.scheme=explicit", 70,
+        "check long.yaml --quick --set time.scheme=explicit", 65,
         "time.cfl, a share of the stable one, is what explicit steps go by where it is given beside time.step");
-    // It is told as it was asked for, though a picture cuts the first step.
-    small_expect("check long.yaml --quick --set time.scheme=explicit --set output.every='9 ms'", 70,
+    // It is told as it was asked for, though a picture cuts the first step, and where, before anything is written.
+    small_expect("check long.yaml --quick --set time.scheme=explicit --set output.every='9 ms'", 65,
                  "the fixed step of 0.01 s is larger");
+    small_expect("run long.yaml -o none -q --set time.scheme=explicit", 65, "long.yaml:3:");
+    ck_assert_int_eq(small_shell("test -e none"), 1);
 }
 END_TEST
 

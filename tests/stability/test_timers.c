@@ -173,7 +173,7 @@ END_TEST
 
 // A step that fails leaves in the midst of a pass, which is ended all the same.
 START_TEST(failed_steps_are_accounted) {
-    static const place failing = {"failing", tiny_text, NULL, {"time.step=0.5 s"}, ""};
+    static const place failing = {"failing", tiny_text, NULL, {"time.least_step=0.5 s"}, ""};
     brunt_scene scene;
     brunt_world *world = make(&failing, &scene, 1);
     watch w = {.world = world, .pass = -1};

@@ -190,12 +190,13 @@ START_TEST(the_step_is_named) {
     def.step = 0.9 * brunt_world_dt(alone);
     brunt_world_destroy(alone);
     load(&def, BRUNT_GROUP_GAS, 1e7, 1e7);
-    brunt_world *world = world_take(&def);
     brunt_error error = {0};
-    ck_assert_int_eq(brunt_world_step(world, INFINITY, &error), BRUNT_FAILED);
-    ck_assert_msg(strstr(error.message, "step") && strstr(error.message, "stable") && strstr(error.message, "surface"),
+    ck_assert_ptr_null(brunt_world_create(&def, &error));
+    ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "time.step") && strstr(error.message, "stable") &&
+                      strstr(error.message, "surface"),
                   "%s", error.message);
-    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
 }
 END_TEST
 
