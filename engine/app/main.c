@@ -1,4 +1,5 @@
 // The program: picks a command.
+#include <fcntl.h>
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -47,6 +48,15 @@ __attribute__((constructor(101))) static void spin_shortly(void) {
     setenv("KMP_BLOCKTIME", "1", 0); // [ms]
 }
 
+// A stream that the program was started without (>&-) has no descriptor, and the first file that is opened would get
+// it: what is printed went into that file. brunt.files was one, whose lines are names that may be removed. What stands
+// there instead cannot be read or written, so that it fails as it should.
+static bool hold_streams(void) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream ? O_RDONLY : O_WRONLY) != stream) return false;
+    return true;
+}
+
 // Whoever closes a pipe wants no more of it: nothing is missed.
 static bool reader_gone(void) {
     struct pollfd output = {.fd = STDOUT_FILENO};
@@ -71,6 +81,7 @@ int main(int argc, char **argv) {
                     {"keys", cmd_keys, false},
                     {"info", cmd_info, false},
                     {"study", cmd_study, true}};
+    if (!hold_streams()) return BRUNT_IO_ERROR;
     if (argc < 2) {
         fputs("brunt: a command is wanted: run, check, study, keys or info (brunt --help says more)\n", stderr);
         return BRUNT_BAD_USAGE;

@@ -43,6 +43,23 @@ START_TEST(plans_have_each_effect_once) {
 }
 END_TEST
 
+// Started without standard streams the program prints into no file: the list of the folder's files has names alone, and
+// the exit code says that what was to be printed is not.
+START_TEST(no_streams) {
+    small_put("small.yaml", small_scene_text);
+    ck_assert_int_eq(small_shell("$B run small.yaml -q -o usual"), 0);
+    static const char *const closed[] = {"<&- >said", ">&-", "<&- >&-", "<&- >&- 2>&-"};
+    for (int c = 0; c < (int)(sizeof closed / sizeof *closed); c++) {
+        ck_assert_int_eq(small_shell("$B run small.yaml --fresh -o run %s", closed[c]), c ? 74 : 0);
+        ck_assert_msg(
+            small_shell("cmp usual/brunt.files run/brunt.files && ls usual usual/vtu | sed s/usual/run/ > a && "
+                        "ls run run/vtu | cmp - a") == 0,
+            "%s: see above", closed[c]);
+    }
+    ck_assert_int_eq(small_shell("$B run small.yaml -q --fresh -o run <&- 2>&-"), 0);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_start");
     TCase *tests = tcase_create("start");
@@ -51,6 +68,7 @@ int main(void) {
     tcase_add_test(tests, few_libraries);
     tcase_add_test(tests, short_spins);
     tcase_add_test(tests, plans_have_each_effect_once);
+    tcase_add_test(tests, no_streams);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
