@@ -267,6 +267,10 @@ static int restore(run *r, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH];
     const uint64_t mesh_hash = r->state.mesh_hash, identity = r->state.identity;
     int status = path_in(r, "checkpoint.h5", path, error);
+    if (!status && !brunt_output_has(&r->output, "checkpoint.h5") &&
+        brunt_output_has(&r->output, "checkpoint.previous.h5"))
+        status = brunt_fail(error, BRUNT_BAD_INPUT,
+                            "%s: is not there; put checkpoint.previous.h5, the one before it, in its place", path);
     if (!status) status = brunt_checkpoint_read(path, r->world, r->scene_text, &r->state, error);
     if (status) return status;
     r->state.identity = identity;

@@ -35,10 +35,11 @@ static int refuse_scene_itself(const brunt_output_folder *folder, const brunt_sc
 }
 
 // A run that has ended has said so in its summary; one that failed may be resumed when its checkpoint is not of the
-// failure.
+// failure. Where a file can have one name only, a kill may have left the checkpoint before alone.
 static int refuse_unfinished(const brunt_output_folder *folder, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH], status_name[16];
-    if (!brunt_output_has(folder, "checkpoint.h5")) return BRUNT_OK;
+    if (!brunt_output_has(folder, "checkpoint.h5") && !brunt_output_has(folder, "checkpoint.previous.h5"))
+        return BRUNT_OK;
     int status = brunt_join_path(path, folder->path, "summary.json", error);
     if (status) return status;
     brunt_summary_status(path, status_name);
