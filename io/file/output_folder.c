@@ -113,6 +113,15 @@ int brunt_output_open(brunt_output_folder *out, const char *path, brunt_error *e
     return status ? status : read_list(out, error);
 }
 
+int brunt_output_path(const brunt_output_folder *out, const char *name, char path[BRUNT_PATH_LENGTH],
+                      brunt_error *error) {
+    struct stat own, there;
+    if (out->folder >= 0 && !fstat(out->folder, &own) &&
+        (stat(out->path, &there) || there.st_dev != own.st_dev || there.st_ino != own.st_ino))
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s: was moved or removed while brunt was at work there", out->path);
+    return brunt_join_path(path, out->path, name, error);
+}
+
 void brunt_output_close(brunt_output_folder *out) {
     forget_names(out);
     if (out->index >= 0) close(out->index);

@@ -28,6 +28,10 @@ typedef struct brunt_output_folder {
 int brunt_output_open(brunt_output_folder *out, const char *path, brunt_error *error);
 void brunt_output_close(brunt_output_folder *out);
 
+// The path of `name` below the folder. BRUNT_IO_ERROR: what it leads to is not what was opened, but gone or another's.
+int brunt_output_path(const brunt_output_folder *out, const char *name, char path[BRUNT_PATH_LENGTH],
+                      brunt_error *error);
+
 bool brunt_output_listed(const brunt_output_folder *out, const char *name);
 bool brunt_output_has(const brunt_output_folder *out, const char *name); // anything of that name, also a broken link
 

@@ -48,7 +48,7 @@ typedef struct run {
 } run;
 
 static int path_in(const run *r, const char *name, char out[BRUNT_PATH_LENGTH], brunt_error *error) {
-    return brunt_join_path(out, r->folder, name, error);
+    return brunt_output_path(&r->output, name, out, error);
 }
 
 static double cpu_clock(void) {

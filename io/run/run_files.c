@@ -18,7 +18,7 @@ typedef struct job {
 } job;
 
 static int path_of(const job *j, const char *name, char path[BRUNT_PATH_LENGTH], brunt_error *error) {
-    return brunt_join_path(path, j->files->folder->path, name, error);
+    return brunt_output_path(j->files->folder, name, path, error);
 }
 
 static int list_parts(void *context, brunt_error *error) {

@@ -147,6 +147,26 @@ START_TEST(one_run_a_folder) {
 END_TEST
 
 // A trace takes the place of a trace only.
+// A folder that is moved away takes its run with it: what has its name then is another's. Pictures alone are written,
+// which are opened as soon as the folder has been looked at.
+START_TEST(a_folder_is_moved) {
+    static const char *const pictures[] = {"--set", "time.end=1000 s",       "--set", "output.every=1 ms",
+                                           "--set", "output.checkpoint=none"};
+    for (int again = 0; again < 2; again++) {
+        const pid_t child = small_begin("out", "out/vtu/left_000003.vtu", pictures, 6);
+        ck_assert_int_eq(small_shell("mv out moved && if [ %d = 1 ]; then mkdir -p out/vtu && echo mine > "
+                                     "out/checkpoint.h5; fi",
+                                     again),
+                         0);
+        ck_assert_int_eq(small_end(child, 0), 74);
+        ck_assert_int_eq(small_shell("grep -q 'out: was moved or removed' moved/log.txt"), 0);
+        if (again) expect_text("out/checkpoint.h5", "mine\n");
+        ck_assert_int_eq(small_shell("test $(find . -path './out/*' | wc -l) = %d", again ? 2 : 0), 0);
+        ck_assert_int_eq(small_shell("rm -r moved"), 0);
+    }
+}
+END_TEST
+
 START_TEST(a_trace_replaces_traces_only) {
     small_expect("run small.yaml -q -t 1 -o out --trace t.json", 0, NULL);
     small_expect("run small.yaml -q -t 1 -o out --trace t.json", 0, NULL);
@@ -299,6 +319,7 @@ int main(void) {
     tcase_add_test(tcase, an_unfinished_run_is_not_begun_anew);
     tcase_add_test(tcase, a_run_that_ended_is_replaced);
     tcase_add_test(tcase, one_run_a_folder);
+    tcase_add_test(tcase, a_folder_is_moved);
     tcase_add_test(tcase, a_trace_replaces_traces_only);
     tcase_add_test(tcase, links_are_not_followed);
     tcase_add_test(tcase, a_list_that_lies);
