@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs the build in the folder named as argument under a prefix of its own, builds tests/support/installed.c against it with
 # what pkg-config says, and runs that and the installed program; each public header is compiled by itself, in C and C++.
+# A build folder with a space in its path is configured, and the program linked as it would be there.
 #
 #   sh tests/support/install.sh BUILD [COMPILER]      default: cc
 set -eu
@@ -28,4 +29,8 @@ done
     echo "brunt.pc and the program give different versions"
     exit 1
 }
+# The program is linked the same way where the build folder has a space in its path.
+cmake -S . -B "$prefix/a b" -G 'Unix Makefiles' -DBRUNT_TESTS=OFF -DBRUNT_BENCH=OFF >"$prefix/log" 2>&1 || { cat "$prefix/log"; exit 1; }
+link=$(sed "s|-o brunt |-o $prefix/linked |" "$prefix/a b/CMakeFiles/brunt_program.dir/link.txt")
+(cd "$build" && eval "$link") && "$prefix/linked" --version >/dev/null
 "$prefix/bin/brunt" check bench/scenes/two_disks.yaml >"$prefix/log" || { cat "$prefix/log"; exit 1; }
