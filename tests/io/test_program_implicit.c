@@ -159,11 +159,14 @@ START_TEST(planes_push_where_bodies_pass_through_each_other) {
 }
 END_TEST
 
-// Before bodies are near each other there is no gap: a least one is of the lines that have one.
+// Before bodies are near each other there is no gap: a least one, a mean and the first are of the lines that have one.
 START_TEST(has_a_least_gap_from_where_there_is_one) {
     ck_assert_int_eq(
         small_shell("printf 'measures:\\n  least: {history: newton.least_gap, take: min}\\n"
                     "  first: {history: newton.least_gap, take: initial}\\n"
+                    "  greatest: {history: newton.least_gap, take: max}\\n"
+                    "  mean: {history: newton.least_gap, take: mean}\\n"
+                    "  begins: {history: newton.least_gap, take: first_nonzero}\\n"
                     "  before: {history: newton.least_gap, take: min, to: 2 ms, expect: 1 m, tolerance: 1}\\n'"
                     " >> small.yaml"),
         0);
@@ -171,6 +174,9 @@ START_TEST(has_a_least_gap_from_where_there_is_one) {
                  "before                         no value, there is nothing to take it from  FAIL");
     json_t *s = summary_of("out"), *m = json_object_get(s, "measures");
     ck_assert_double_eq(number_at(json_object_get(m, "least"), NULL, "value"), number_at(s, NULL, "least_gap"));
+    ck_assert_double_gt(number_at(m, "mean", "value"), number_at(m, "least", "value"));
+    ck_assert_double_lt(number_at(m, "mean", "value"), number_at(m, "greatest", "value"));
+    ck_assert_double_gt(number_at(m, "begins", "value"), 2e-3);
     ck_assert(json_is_null(json_object_get(json_object_get(m, "first"), "value")));
     ck_assert(json_is_null(json_object_get(json_object_get(m, "before"), "value")));
     ck_assert(json_is_false(json_object_get(json_object_get(m, "before"), "ok")));
