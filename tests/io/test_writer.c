@@ -104,6 +104,20 @@ START_TEST(what_gives_goes_on_until_the_line_is_full) {
 }
 END_TEST
 
+// The first waits at its gate until the end has begun: those behind it are written all the same.
+START_TEST(the_end_waits_for_what_is_in_line) {
+    brunt_writer *writer = begin(true);
+    pthread_t opener;
+    brunt_error error = {0};
+    ck_assert_int_eq(give(writer, (noted){.number = 0, .gate = gate[0]}, &error), BRUNT_OK);
+    for (int n = 1; n < 10; n++) ck_assert_int_eq(give(writer, (noted){.number = n}, &error), BRUNT_OK);
+    ck_assert_int_eq(pthread_create(&opener, NULL, open_later, &gate[1]), 0);
+    brunt_writer_end(writer);
+    pthread_join(opener, NULL);
+    all_in_order(10);
+}
+END_TEST
+
 START_TEST(after_a_failure_nothing_is_written_until_it_is_told) {
     brunt_writer *writer = begin(_i);
     brunt_error error = {0};
@@ -245,6 +259,7 @@ int main(void) {
     tcase_add_checked_fixture(all, set_up, tear_down);
     tcase_add_loop_test(all, jobs_are_done_in_order_and_before_the_end, 0, 2);
     tcase_add_test(all, what_gives_goes_on_until_the_line_is_full);
+    tcase_add_test(all, the_end_waits_for_what_is_in_line);
     tcase_add_loop_test(all, after_a_failure_nothing_is_written_until_it_is_told, 0, 2);
     tcase_add_test(all, it_is_one_of_the_threads_while_it_is_at_work);
     tcase_add_loop_test(all, a_run_writes_its_files_in_order, 0, 2);
