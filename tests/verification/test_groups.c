@@ -173,6 +173,8 @@ START_TEST(rotation_follows_its_table) {
     memcpy(turn->table.points, table, sizeof table);
     pull->table.points = brunt_alloc(2 * sizeof *pull->table.points), pull->table.count = 2;
     memcpy(pull->table.points, table, sizeof table);
+    double about[3];
+    memcpy(about, turn->rotation.about, sizeof about);
     brunt_world *world = world_take(&def);
     double *x0 = world_field(world, 0, "position");
     for (int t = 1; t <= 3; t++) {
@@ -181,8 +183,7 @@ START_TEST(rotation_follows_its_table) {
         world_until(world, 0.04 * t);
         double *x = world_field(world, 0, "position");
         for (int64_t k = 0; k < brunt_body_nodes(world, 0); k++) {
-            const double *from = x0 + 3 * k, *about = turn->rotation.about, p = from[i] - about[i],
-                         q = from[j] - about[j];
+            const double *from = x0 + 3 * k, p = from[i] - about[i], q = from[j] - about[j];
             if (from[0] < 1 - 1e-9) continue;
             ck_assert_double_eq_tol(x[3 * k + i], about[i] + cos(angle) * p - sin(angle) * q, 100 * ROUNDING);
             ck_assert_double_eq_tol(x[3 * k + j], about[j] + sin(angle) * p + cos(angle) * q, 100 * ROUNDING);
