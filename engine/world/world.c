@@ -147,7 +147,9 @@ static int start(brunt_world *world, brunt_error *error) {
         return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
     brunt_clock_make(&world->clock, brunt_stable_step(world), world->settings.fixed_step);
     const brunt_accounts accounts = brunt_accounts_of(world);
+    brunt_bodies_measure(&world->bodies, world->settings.threads);
     brunt_ledger_open(&world->ledger, &accounts);
+    brunt_bodies_forget(&world->bodies);
     return BRUNT_OK;
 }
 
